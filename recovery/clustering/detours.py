@@ -10,7 +10,6 @@ edit.
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,6 +22,7 @@ from grammar.notation.model import Alternative, Grammar, GrammarError, Repeat, R
 from grammar.parser.lazy_automaton import Configuration, Core
 from grammar.parser.network import Network, Reach, RuleAutomaton, exact_automata
 from grammar.parser.recognizer import Recognizer, State
+from recovery.forms.parts import parts
 from recovery.tuning import MOST_READINGS, MOST_STATES
 
 #: The first position of a detour, and the position to return to after it, if it reads a text.
@@ -33,11 +33,13 @@ _Detour = tuple[int, int | None]
 class Detours:
     """Edits as detours: those that begin at each position, and the words the edits reserve.
 
-    ``starts`` caches the core to which they lead from a core, for a token kind.
+    ``after`` caches the core to which they lead from a core, and ``starts`` the same for a token
+    kind that has to follow.
     """
 
     at: dict[int, list[_Detour]]
     words: frozenset[str]
+    after: dict[Core, Core | None] = field(default_factory=dict, compare=False)
     starts: dict[tuple[Core, int], Core | None] = field(default_factory=dict, compare=False)
 
 
@@ -182,7 +184,7 @@ class DetourReader:
         """Return a text's first position, whether it may be empty, whether it is a bare choice."""
         known = self._texts.get(text)
         if known is None:
-            rule = _read(text)
+            rule = rule_of(text)
             try:
                 automaton = exact_automata(self._grammar, rule)(())
             except KeyError:
@@ -307,7 +309,9 @@ class DetourReader:
         try:
             return detours.starts[core, kind]
         except KeyError:
-            start = self._started(detours, core)
+            if core not in detours.after:
+                detours.after[core] = self._started(detours, core)
+            start = detours.after[core]
             if start is not None and not start.is_open:
                 ways = self.recognizer.ways(start)
                 start = start if any(reach[kind] for reach, _ in ways) else None
@@ -346,15 +350,11 @@ class DetourReader:
         return recognizer.state_of(found).core if found else None
 
 
-#: The parts of a text between blanks; parentheses and quoted texts are not split.
-_PARTS = re.compile(r"(?:'(?:[^'\\]|\\.)*'|\((?:[^()']|'(?:[^'\\]|\\.)*')*\)|[^\s'()])+")
-
-
-def _read(text: str) -> Rule:
+def rule_of(text: str) -> Rule:
     """Return a text as a rule without a name; most of its parts are in the cache of rules."""
-    parts = _PARTS.findall(text)
-    if " ".join(parts) != text or "|" in parts:
+    pieces = parts(text)
+    if "|" in pieces or not pieces:
         return read_rule(f"text : {text} ;")
-    read = [read_rule(f"text : {part} ;") for part in parts]
+    read = [read_rule(f"text : {piece} ;") for piece in pieces]
     elements = tuple(e for rule in read for e in rule.alternatives[0].elements)
     return Rule("text", (Alternative(elements, None, (0, 0)),))

@@ -7,18 +7,15 @@ alternatives that were the only users of a rule. Such edits are found here and w
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, Widen
+from recovery.forms.parts import parts
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import MOST_MERGED_EDITS
-
-# Words of a text; a choice in parentheses counts as one.
-_WORDS = re.compile(r"\([^()]*\)[?*+]?|\S+")
 
 
 def combined_edits(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
@@ -95,7 +92,7 @@ def merged_as_choice(
         edit = candidate.edits[-1]
         if not isinstance(edit, Insert | Widen | AddAlternative):
             continue
-        words = _WORDS.findall(edit.text.strip("()?*") if isinstance(edit, Insert) else edit.text)
+        words = parts(edit.text.strip("()?*") if isinstance(edit, Insert) else edit.text)
         place = () if isinstance(edit, AddAlternative) else edit.at
         for i, word in enumerate(words):
             if allowed(edit, i):

@@ -236,6 +236,15 @@ class EditTrial:
             for _, start, kinds in self.read_by(wider, edits, short)
         )
 
+    def leads_to(self, edits: Sequence[Edit], mended: Iterable[int], others: Iterable[int]) -> bool:
+        """Return whether one of the ``others`` can be read right behind a mended line."""
+        wider = self.wider(edits)
+        if wider is None:
+            return False
+        ends = {wider.run(start, line)[0] for _, start, line in self.read_by(wider, edits, mended)}
+        behind = [line for _, _, line in self.read_by(wider, edits, others)]
+        return any(wider.run(end, line)[1] is None for end in ends for line in behind)
+
     def read_by(
         self, wider: Recognizer, edits: Sequence[Edit], numbers: Iterable[int]
     ) -> Iterator[tuple[int, State, Sequence[int]]]:

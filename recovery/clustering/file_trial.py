@@ -86,16 +86,8 @@ class FileTrial:
         They always come after such a line, and no longer fail. Lines in files that are too many or
         too long to be read again are left out.
         """
-        first: dict[int, int] = {}
-        for line in mended:
-            for place, at in self._occurrences_of(line):
-                first[place] = min(at, first.get(place, at))
-        near = {line for place in first for line in self._files[place].lines}
-        behind = {
-            line
-            for line in near.intersection(others)
-            if all(first.get(place, at) < at for place, at in self._occurrences_of(line))
-        }
+        first = self._first(mended)
+        behind = self.behind(mended, others)
         wanted: dict[int, list[tuple[int, int]]] = {}
         for place in first:
             found = [(at, line) for at, line in self._files[place].failing if line in behind]
@@ -117,6 +109,24 @@ class FileTrial:
             for at, line in wanted[place]:
                 (left if at in failing else gone).add(line)
         return frozenset(gone - left)
+
+    def behind(self, mended: Iterable[int], others: Collection[int]) -> frozenset[int]:
+        """Return those of the ``others`` that always come after a line that is ``mended``."""
+        first = self._first(mended)
+        near = {line for place in first for line in self._files[place].lines}
+        return frozenset(
+            line
+            for line in near.intersection(others)
+            if all(first.get(place, at) < at for place, at in self._occurrences_of(line))
+        )
+
+    def _first(self, lines: Iterable[int]) -> dict[int, int]:
+        """Return the files in which the lines occur, with the number of the first one in each."""
+        first: dict[int, int] = {}
+        for line in lines:
+            for place, at in self._occurrences_of(line):
+                first[place] = min(at, first.get(place, at))
+        return first
 
     def _occurrences_of(self, line: int) -> Iterator[tuple[int, int]]:
         """Yield the index of a file and the number in it for each place where a line fails."""

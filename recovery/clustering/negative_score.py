@@ -10,7 +10,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, Widen
-from grammar.notation.g4 import read_rule
 from grammar.notation.model import (
     Alternative,
     Element,
@@ -23,7 +22,7 @@ from grammar.notation.model import (
 )
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import NegativeCounter
-from recovery.clustering.detours import DetourReader, Path
+from recovery.clustering.detours import DetourReader, Path, rule_of
 from recovery.clustering.edit_trial import changed_rules, edited
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
@@ -155,7 +154,7 @@ class _Tokens:
 
     def of_text(self, text: str) -> frozenset[int]:
         """Return the tokens in every sentence of a text, the empty one left aside."""
-        alternatives = read_rule(f"text : {text} ;").alternatives
+        alternatives = rule_of(text).alternatives
         while (inner := _only(alternatives)) is not None:
             alternatives = inner
         return self._of_choice(alternatives)

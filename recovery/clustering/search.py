@@ -17,9 +17,9 @@ from recovery.clustering.edit_merging import merged_as_choice
 from recovery.clustering.edit_trial import EditTrial, TrialResult
 from recovery.clustering.file_trial import FileTrial
 from recovery.clustering.regression import ParsedFiles, no_parsed_files
+from recovery.forms.symbol_reader import Token
 from recovery.proposals.candidates import Candidate, CandidateFinder
 from recovery.proposals.edit_site import LinePattern
-from recovery.proposals.segmentation import Word
 from recovery.tuning import (
     ADVANCED_WEIGHT,
     ALL_ALIKE_FACTOR,
@@ -73,7 +73,7 @@ class CauseSearch:
         self.open = {n for n, line in enumerate(lines) if not line.is_enormous}
         self._meant = frozenset(word for line in lines for _, word in line.keywords)
         self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
-        self.same_lead: dict[Word, list[int]] = defaultdict(list)
+        self.same_lead: dict[Token, list[int]] = defaultdict(list)
         for number in sorted(self.open, key=lambda n: (-weights[n], n)):
             self.same_token[self._token(number)].append(number)
             self.same_lead[lines[number].words()[0]].append(number)
@@ -105,11 +105,11 @@ class CauseSearch:
         """Return the cause with the lines that only fail because of its own."""
         best = cause.proposals[0]
         wider = self.trial.wider(best.edits)
-        others = self.open.difference(cause.lines)
-        if wider is None or not others:
-            return cause
         mended = best.mended.intersection(cause.lines)
-        more = self.file_trial.entailed(wider, mended, others)
+        behind = self.file_trial.behind(mended, self.open.difference(cause.lines))
+        if wider is None or not self.trial.leads_to(best.edits, mended, behind):
+            return cause
+        more = self.file_trial.entailed(wider, mended, behind)
         return Cause(tuple(sorted({*cause.lines, *more})), cause.proposals)
 
     def _proposals(self, group: Sequence[int]) -> list[Proposal]:

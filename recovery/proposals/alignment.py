@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from recovery.forms.symbol_reader import Token
 from recovery.proposals.collocations import last_two
 from recovery.proposals.phrases import Phraser
-from recovery.proposals.segmentation import Word
 from recovery.tuning import (
     MOST_ALIGNED,
     MOST_ALIGNMENTS_KEPT,
@@ -23,8 +23,8 @@ from recovery.tuning import (
     PHRASE_LEVELS,
 )
 
-_Span = tuple[Word, ...]
-_Phrases = tuple[tuple[Word, ...], ...]
+_Span = tuple[Token, ...]
+_Phrases = tuple[tuple[Token, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Aligner:
         self._known: dict[tuple[_Phrases, frozenset[str]], list[tuple[str, ...]]] = {}
 
     def common_phrases(
-        self, phrases: Sequence[Sequence[Word]], near: frozenset[str] = frozenset()
+        self, phrases: Sequence[Sequence[Token]], near: frozenset[str] = frozenset()
     ) -> list[tuple[str, ...]]:
         """Return phrases of symbols that read all of ``phrases``, the most restrictive first.
 
@@ -83,7 +83,7 @@ class Aligner:
                 for written in (_as_usual(self._phraser, columns, narrow, rows), narrow):
                     yield tuple(_grouped(columns, written, rows))
 
-    def _aligned(self, phrases: Sequence[Sequence[Word]]) -> tuple[Sequence[_Column], int]:
+    def _aligned(self, phrases: Sequence[Sequence[Token]]) -> tuple[Sequence[_Column], int]:
         """Return the columns of the phrases and the number of rows; none if they do not align."""
         cut = {tuple(_row(self._phraser, p)) for p in phrases} - {()}
         rows = sorted(cut, key=_by_length)[:MOST_ALIGNED]
@@ -106,7 +106,7 @@ def _by_length(row: tuple[_Part, ...]) -> tuple[int, str]:
     return -len(row), str([(p.key, p.spans) for p in row])
 
 
-def _row(phraser: Phraser, words: Sequence[Word]) -> list[_Part]:
+def _row(phraser: Phraser, words: Sequence[Token]) -> list[_Part]:
     """Return the parts of a phrase; a list such as ``a , a , a`` is one part."""
     out: list[_Part] = []
     spans = phraser.segmenter.parts(words) or []

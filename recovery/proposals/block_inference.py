@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer
+from recovery.forms.symbol_reader import Token
 from recovery.proposals.alignment import Aligner
 from recovery.proposals.blocks import BlockLines, SourceFile, find_blocks
 from recovery.proposals.grammar_profile import GrammarProfile
-from recovery.proposals.segmentation import Word
 from recovery.tuning import MOST_BLOCK_FORMS, MOST_BODIES
 
 
@@ -57,7 +57,7 @@ class BlockFinder:
         keywords = tuple(sorted({k for line in words for _, k in line if k}))
         return [Block(form, keywords) for form in self._forms(block)]
 
-    def _lines(self, text: str, meant: frozenset[str]) -> Iterator[tuple[str, tuple[Word, ...]]]:
+    def _lines(self, text: str, meant: frozenset[str]) -> Iterator[tuple[str, tuple[Token, ...]]]:
         """Yield the lines of a text: the keyword that begins it, or none, and its tokens.
 
         A name that is alone on its line is meant as a keyword too.
@@ -93,5 +93,5 @@ class BlockFinder:
                     symbols.append(f"({' '.join((*phrase, end, *body))}){often}")
                 yield (*symbols, *closers[min(level, len(closers) - 1)])
 
-    def _phrases(self, lines: Iterable[tuple[Word, ...]]) -> list[tuple[str, ...]]:
+    def _phrases(self, lines: Iterable[tuple[Token, ...]]) -> list[tuple[str, ...]]:
         return self.aligner.common_phrases(list(lines))

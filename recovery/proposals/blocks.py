@@ -11,7 +11,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from recovery.proposals.segmentation import Word
+from recovery.forms.symbol_reader import Token
 from recovery.tuning import (
     BALANCED_FILES,
     BALANCED_ORIGINS,
@@ -24,9 +24,9 @@ from recovery.tuning import (
 )
 
 #: A line as its leading word, empty where it has none, and its tokens.
-_Line = tuple[str, tuple[Word, ...]]
+_Line = tuple[str, tuple[Token, ...]]
 #: Distinct lines with the origins that have them.
-_Having = dict[tuple[Word, ...], set[str]]
+_Having = dict[tuple[Token, ...], set[str]]
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,12 +18,12 @@ from typing import TypeVar
 from grammar.notation.addresses import Address
 from grammar.notation.edits import AddAlternative, Edit, Insert, Widen
 from grammar.parser.recognizer import Recognizer
+from recovery.forms.symbol_reader import Token
 from recovery.proposals.alignment import Aligner
 from recovery.proposals.block_inference import Block, BlockFinder
 from recovery.proposals.edit_site import EditSite, LinePattern, RankedEdits
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.phrases import Phraser
-from recovery.proposals.segmentation import Word
 from recovery.proposals.similarity import Similarity
 from recovery.proposals.site_finder import EditSiteFinder
 from recovery.tuning import (
@@ -178,7 +178,7 @@ class CandidateFinder:
     def _written(
         self,
         site: EditSite,
-        words: Sequence[Word],
+        words: Sequence[Token],
         symbols: tuple[str, ...],
         *,
         looped: bool = False,

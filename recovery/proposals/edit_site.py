@@ -10,7 +10,7 @@ from grammar.notation.edits import Edit
 from grammar.parser.failures import Form
 from grammar.parser.lazy_automaton import Configuration
 from grammar.parser.recognizer import Recognizer, State
-from recovery.proposals.segmentation import Word
+from recovery.forms.symbol_reader import Token
 from recovery.tuning import DEEPEST_STACK, LONGEST_LINE
 
 #: Complete edits with their rank, which estimates how much they accept.
@@ -30,7 +30,7 @@ class LinePattern:
         deepest = max(map(len, self.form.before), default=0)
         return len(self.form.kinds) > LONGEST_LINE or deepest > DEEPEST_STACK
 
-    def words(self) -> list[Word]:
+    def words(self) -> list[Token]:
         """Return the tokens of the line."""
         meant = dict(self.keywords)
         return [(kind, meant.get(i)) for i, kind in enumerate(self.form.kinds)]
@@ -49,7 +49,7 @@ class EditSite:
     kind: OneOf["insert", "lines", "line", "widen", "alternative"]
     rule: str
     place: Address
-    words: tuple[Word, ...]
+    words: tuple[Token, ...]
     rank: int
 
 

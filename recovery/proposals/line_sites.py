@@ -13,10 +13,10 @@ from grammar.parser.failures import Form
 from grammar.parser.lazy_automaton import Configuration
 from grammar.parser.recognizer import State
 from grammar.parser.shortest_paths import Paths
+from recovery.forms.symbol_reader import Token
 from recovery.proposals.edit_site import EditSite, RankedEdits, configurations_of, places_of
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.phrases import Phraser
-from recovery.proposals.segmentation import Word
 from recovery.proposals.similarity import Similarity
 from recovery.tuning import LINE_LOOP_COST, SITE_COST, UNLIKELY_COST
 
@@ -32,7 +32,7 @@ class LineSiteFinder:
         self.phraser = phraser
         self._paths = Paths(profile.recognizer.network)
 
-    def as_lines(self, before: State, words: list[Word]) -> Iterator[EditSite | RankedEdits]:
+    def as_lines(self, before: State, words: list[Token]) -> Iterator[EditSite | RankedEdits]:
         """Yield sites that accept the line any number of times where it is not expected."""
         recognizer, profile = self.recognizer, self.profile
         kinds = tuple(kind for kind, _ in words)
@@ -90,7 +90,7 @@ class LineSiteFinder:
         called = {network.rule[entry] for entry, _ in network.calls[site[0]]}
         return bool(called & self.profile.loops & self.profile.of_lines)
 
-    def after_line_end(self, form: Form, words: list[Word]) -> Iterator[RankedEdits]:
+    def after_line_end(self, form: Form, words: list[Token]) -> Iterator[RankedEdits]:
         """Yield edits that read the line if the line end before it had been read otherwise."""
         recognizer, profile = self.recognizer, self.profile
         way = min(map(self._paths.prefix, form.before), key=len)
@@ -118,7 +118,7 @@ class LineSiteFinder:
                         (Insert(rule, place, text),),
                     )
 
-    def _as_alternatives(self, before: State, words: list[Word]) -> Iterator[EditSite]:
+    def _as_alternatives(self, before: State, words: list[Token]) -> Iterator[EditSite]:
         """Yield the line as an alternative of a rule whose alternatives are whole lines."""
         network = self.recognizer.network
         rules = {
@@ -138,7 +138,7 @@ class LineSiteFinder:
         whole = matcher.rules_for(kinds) | frozenset(matcher.multi_line_rules(kinds))
         return tuple(sorted(whole - self.profile.line_ends))
 
-    def as_new_line(self, before: State, words: list[Word]) -> Iterator[EditSite]:
+    def as_new_line(self, before: State, words: list[Token]) -> Iterator[EditSite]:
         """Yield the line as an alternative of a rule that can begin there."""
         last = len(words) - 1
         end = [words[last][0]]

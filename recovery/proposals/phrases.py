@@ -13,8 +13,9 @@ from itertools import islice, product
 
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.rule_matcher import RuleMatcher
+from recovery.forms.symbol_reader import Token
 from recovery.proposals.collocations import Before, Collocations, symbols_in
-from recovery.proposals.segmentation import Segmenter, Word
+from recovery.proposals.segmentation import Segmenter
 from recovery.tuning import (
     HUB_ALTERNATIVES,
     LONGEST_PHRASE,
@@ -131,13 +132,13 @@ class Phraser:
         )
         return cost + (NARROWER_RULE_COST if is_narrower else 0)
 
-    def sign(self, span: Sequence[Word]) -> str | None:
+    def sign(self, span: Sequence[Token]) -> str | None:
         """Return the text of a keyword or sign; ``None`` for a token with a value."""
         if len(span) != 1 or (span[0][1] is None and self.matcher.is_operand(span[0][0])):
             return None
         return self._token(span[0])
 
-    def stands_for_a_rule(self, span: Sequence[Word], *, is_listed: bool) -> bool:
+    def stands_for_a_rule(self, span: Sequence[Token], *, is_listed: bool) -> bool:
         """Return whether some rule reads the span by itself (``TRUE`` is a literal too).
 
         A rule that reads almost any keyword does not count, unless the keyword is an item of a
@@ -153,7 +154,7 @@ class Phraser:
         )
 
     def rules_for_all(
-        self, spans: Sequence[tuple[Word, ...]], near: frozenset[str] = frozenset()
+        self, spans: Sequence[tuple[Token, ...]], near: frozenset[str] = frozenset()
     ) -> tuple[str, ...]:
         """Return rules that read each of the spans, from the narrowest to the widest."""
         if any(keyword is not None or kind < 0 for span in spans for kind, keyword in span):
@@ -166,7 +167,7 @@ class Phraser:
         return self._levels_of(rules, near)
 
     def phrases(
-        self, words: Sequence[Word], near: frozenset[str] = frozenset()
+        self, words: Sequence[Token], near: frozenset[str] = frozenset()
     ) -> Iterator[tuple[str, ...]]:
         """Yield phrases for the words, the most restrictive first; none for too many words.
 
@@ -181,7 +182,7 @@ class Phraser:
                     seen.add(shape)
                     yield shape
 
-    def _spellings(self, words: Sequence[Word], near: frozenset[str]) -> Iterator[tuple[str, ...]]:
+    def _spellings(self, words: Sequence[Token], near: frozenset[str]) -> Iterator[tuple[str, ...]]:
         """Yield the words as they are, then with rules for operands, narrow ones first."""
         parts = self.segmenter.parts(words)
         if parts is None:
@@ -202,7 +203,7 @@ class Phraser:
             ordered = sorted(rules, key=lambda r: (-self._uses[r], r))
             yield from ((rule,) for rule in ordered[:MOST_OPERAND_RULES])
 
-    def _as_usual(self, parts: Sequence[tuple[Word, ...]], symbols: list[str]) -> tuple[str, ...]:
+    def _as_usual(self, parts: Sequence[tuple[Token, ...]], symbols: list[str]) -> tuple[str, ...]:
         """Return the symbols, replaced by what the grammar usually has there if it fits."""
         before = ("", "")
         for place, part in enumerate(parts):
@@ -210,7 +211,7 @@ class Phraser:
             before = (before[1], symbols[place])
         return tuple(symbols)
 
-    def usual_for(self, spans: Sequence[tuple[Word, ...]], before: Before) -> str | None:
+    def usual_for(self, spans: Sequence[tuple[Token, ...]], before: Before) -> str | None:
         """Return the rule that is usual at such a place if it reads all the spans, or ``None``."""
         if any(keyword is not None for span in spans for _, keyword in span):
             return None
@@ -224,7 +225,7 @@ class Phraser:
         return min(fitting, key=lambda r: (-usual[r], len(self._wider[r]), r), default=None)
 
     def _levels(
-        self, part: tuple[Word, ...], near: frozenset[str] = frozenset()
+        self, part: tuple[Token, ...], near: frozenset[str] = frozenset()
     ) -> tuple[str, ...]:
         """Return the symbols for a part: its token, or rules from narrow to wide."""
         if len(part) == 1:
@@ -263,7 +264,7 @@ class Phraser:
         wide = max(rules, key=lambda r: (self._uses[r], len(self._wider[r] & rules), r))
         return tuple(dict.fromkeys((narrow, *close, wide)))
 
-    def _token(self, word: Word) -> str | None:
+    def _token(self, word: Token) -> str | None:
         kind, keyword = word
         if keyword is not None:
             return keyword

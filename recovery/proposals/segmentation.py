@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from recovery.forms.rule_matcher import RuleMatcher
+from recovery.forms.symbol_reader import Token
 from recovery.tuning import (
     LONGEST_SEGMENTED,
     MOST_ANSWERS_KEPT,
@@ -16,9 +17,6 @@ from recovery.tuning import (
     SEAM_COST,
     TOKEN_COST,
 )
-
-#: A token of a line: its kind and, if it is a name meant as a keyword, that keyword.
-Word = tuple[int, str | None]
 
 _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 
@@ -28,9 +26,9 @@ class Segmenter:
 
     def __init__(self, matcher: RuleMatcher) -> None:
         self.matcher = matcher
-        self._cuts: dict[tuple[Word, ...], list[tuple[Word, ...]] | None] = {}
+        self._cuts: dict[tuple[Token, ...], list[tuple[Token, ...]] | None] = {}
 
-    def parts(self, words: Sequence[Word]) -> list[tuple[Word, ...]] | None:
+    def parts(self, words: Sequence[Token]) -> list[tuple[Token, ...]] | None:
         """Return the words cut into the fewest operands and single tokens; ``None`` if too many."""
         if len(words) > LONGEST_SEGMENTED:
             return None
@@ -41,12 +39,14 @@ class Segmenter:
             self._cuts[key] = self._cut(key)
         return self._cuts[key]
 
-    def _cut(self, words: tuple[Word, ...]) -> list[tuple[Word, ...]] | None:
+    def _cut(self, words: tuple[Token, ...]) -> list[tuple[Token, ...]] | None:
         count = len(words)
-        best: list[tuple[int, list[tuple[Word, ...]]] | None] = [None] * count + [(0, [])]
+        best: list[tuple[int, list[tuple[Token, ...]]] | None] = [None] * count + [(0, [])]
         for start in range(count - 1, -1, -1):
             for end in range(start + 1, count + 1):
                 rest, part = best[end], words[start:end]
+                if not self._may_go_on(part):
+                    break
                 if rest is None or not self._can_be_written(part):
                     continue
                 cost = rest[0] + (
@@ -57,7 +57,7 @@ class Segmenter:
                     best[start] = (cost, [part, *rest[1]])
         return best[0][1] if best[0] else None
 
-    def _seams(self, part: tuple[Word, ...]) -> int:
+    def _seams(self, part: tuple[Token, ...]) -> int:
         """Return the number of places at which a part could be split into operands.
 
         These are commas outside of brackets, and the boundaries between values.
@@ -80,10 +80,15 @@ class Segmenter:
             was_value = is_value
         return seams
 
-    def _can_be_written(self, part: tuple[Word, ...]) -> bool:
+    def _may_go_on(self, part: tuple[Token, ...]) -> bool:
+        """Return whether a part is one token, or some rule begins with it."""
+        if len(part) == 1:
+            return True
+        is_new = any(keyword is not None or kind < 0 for kind, keyword in part)
+        return not is_new and bool(self.matcher.begun_by(tuple(kind for kind, _ in part)))
+
+    def _can_be_written(self, part: tuple[Token, ...]) -> bool:
         """Return whether a part is one token, or some rule reads it."""
         if len(part) == 1:
             return part[0][1] is not None or part[0][0] >= 0
-        if any(keyword is not None or kind < 0 for kind, keyword in part):
-            return False
         return bool(self.matcher.rules_for(tuple(kind for kind, _ in part)))

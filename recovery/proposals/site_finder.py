@@ -16,6 +16,7 @@ from grammar.notation.model import Alternative, Element, Group, Reference, Repea
 from grammar.parser.failures import Form
 from grammar.parser.lazy_automaton import Configuration
 from grammar.parser.recognizer import State
+from recovery.forms.symbol_reader import Token
 from recovery.proposals.edit_site import (
     EditSite,
     LinePattern,
@@ -26,7 +27,6 @@ from recovery.proposals.edit_site import (
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.line_sites import LineSiteFinder
 from recovery.proposals.phrases import Phraser
-from recovery.proposals.segmentation import Word
 from recovery.proposals.similarity import Similarity
 from recovery.tuning import (
     LONGEST_PREFIX,
@@ -87,7 +87,7 @@ class EditSiteFinder:
         if form.index == 0:
             yield from self._lines.after_line_end(form, words)
 
-    def reserved(self, words: Sequence[Word]) -> tuple[Edit, ...]:
+    def reserved(self, words: Sequence[Token]) -> tuple[Edit, ...]:
         """Return the edits that reserve the suspected keywords among the words."""
         return self.vocabulary.reserve(keyword for _, keyword in words if keyword)
 
@@ -104,7 +104,7 @@ class EditSiteFinder:
     # ------------------------------------------------------------------- from an earlier token
 
     def _taken_for_something_else(
-        self, before: State, form: Form, words: list[Word]
+        self, before: State, form: Form, words: list[Token]
     ) -> Iterator[EditSite]:
         """Yield alternatives of rules as which earlier tokens were read."""
         recognizer, network = self.recognizer, self.recognizer.network
@@ -145,7 +145,7 @@ class EditSiteFinder:
             for i in range(1, len(each))
         }
 
-    def _earlier(self, before: State, form: Form, words: list[Word]) -> Iterator[EditSite]:
+    def _earlier(self, before: State, form: Form, words: list[Token]) -> Iterator[EditSite]:
         """Yield sites before the failure, where the line was read as something else."""
         recognizer, network = self.recognizer, self.recognizer.network
         begun = self._begun(before, form)
@@ -174,7 +174,7 @@ class EditSiteFinder:
                     if comes_next or (not is_first and end >= form.index):
                         yield self._insertion(rule, place, words[start:end])
 
-    def _reading_on(self, state: State, words: list[Word], start: int, first: int) -> list[int]:
+    def _reading_on(self, state: State, words: list[Token], start: int, first: int) -> list[int]:
         """Return the indices, from ``first`` on, from which the rest can be read in ``state``."""
         kinds = [kind for kind, _ in words]
         ends = range(max(start + 1, first), min(len(kinds), start + MOST_SKIPPED + 1))
@@ -183,7 +183,7 @@ class EditSiteFinder:
     # --------------------------------------------------------------------------- at one site
 
     def _at_site(
-        self, state: State, site: Configuration, words: list[Word], start: int
+        self, state: State, site: Configuration, words: list[Token], start: int
     ) -> Iterator[EditSite | RankedEdits]:
         network = self.recognizer.network
         position, stack = site
@@ -224,7 +224,7 @@ class EditSiteFinder:
             yield from self._omissions(state, site, place, words, start)
 
     def _resuming(
-        self, state: State, words: list[Word], start: int, earliest: int = 0
+        self, state: State, words: list[Token], start: int, earliest: int = 0
     ) -> list[int]:
         """Return where the line can be continued from ``state``, to its end or for some tokens."""
         key = state, start, earliest
@@ -233,7 +233,9 @@ class EditSiteFinder:
             found = self._resumed[key] = self._resumptions(state, words, start, earliest)
         return found
 
-    def _resumptions(self, state: State, words: list[Word], start: int, earliest: int) -> list[int]:
+    def _resumptions(
+        self, state: State, words: list[Token], start: int, earliest: int
+    ) -> list[int]:
         kinds = [kind for kind, _ in words]
         whole, part = [], []
         # the end of the line itself is never part of a phrase
@@ -248,7 +250,7 @@ class EditSiteFinder:
                 part.append(end)
         return whole[:MOST_RESUMPTIONS] or part[:1]
 
-    def _insertion(self, rule: str, place: Address, words: Sequence[Word]) -> EditSite:
+    def _insertion(self, rule: str, place: Address, words: Sequence[Token]) -> EditSite:
         width = self._insertion_width(rule)
         elements = self.profile.sequence(rule, place[:-1]).elements
         if len(place) > 2 and place[-1] > len(elements):
@@ -273,7 +275,7 @@ class EditSiteFinder:
         return width - UNLIKELY_COST if self.profile.is_single_reference(rule) else width
 
     def _repetitions(
-        self, rule: str, place: Address, words: Sequence[Word]
+        self, rule: str, place: Address, words: Sequence[Token]
     ) -> Iterator[RankedEdits | EditSite]:
         """Yield the repetition of the operand before a place: ``a (',' a)*``."""
         if place[-1] == 1 or len(words) < 2 or any(keyword for _, keyword in words[1:]):
@@ -291,7 +293,7 @@ class EditSiteFinder:
             rank -= self.profile.same_text_bonus(text)
             yield rank, (*self.reserved(words), Insert(rule, place, text))
 
-    def _blocks(self, rule: str, place: Address, words: Sequence[Word]) -> Iterator[RankedEdits]:
+    def _blocks(self, rule: str, place: Address, words: Sequence[Token]) -> Iterator[RankedEdits]:
         """Yield a known block that this line begins and that is not expected at this place."""
         if any(keyword for _, keyword in words):
             return
@@ -318,7 +320,7 @@ class EditSiteFinder:
                 yield rank + UNLIKELY_COST, (Insert(rule, place, text),)
 
     def _replacements(
-        self, rule: str, place: Address, element: Element, words: Sequence[Word]
+        self, rule: str, place: Address, element: Element, words: Sequence[Token]
     ) -> Iterator[EditSite]:
         profile = self.profile
         elements = profile.sequence(rule, place[:-1]).elements
@@ -354,7 +356,7 @@ class EditSiteFinder:
         state: State,
         site: Configuration,
         place: Address,
-        words: list[Word],
+        words: list[Token],
         start: int,
     ) -> Iterator[RankedEdits]:
         network = self.recognizer.network

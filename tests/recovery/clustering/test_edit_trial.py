@@ -293,3 +293,18 @@ def test_large_recognisers_are_forgotten(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(edit_trial, "MOST_CONFIGURATIONS_KEPT", 0)
     assert trial.wider(edits[2]) is not None
     assert first is not trial.wider(edits[0])
+
+
+def test_an_edit_leads_to_lines_that_can_follow_what_it_mends() -> None:
+    """The end of a block can follow its beginning, and nothing else that is mended."""
+    found = survey_texts([("a", program("SWITCH\nENDSWITCH A"))], PRELIMINARY)
+    lines = [
+        LinePattern(found.forms[failed.form], ((0, failed.words[0]),))
+        for failed in found.files[0].failures
+    ]
+    words = AddToken("SWITCH"), AddToken("ENDSWITCH")
+    trial = EditTrial(RECOGNIZER, lines)
+    block = AddAlternative("statement", "SWITCH eol statement* ENDSWITCH expression eol")
+    assert trial.leads_to([*words, block], [0], [1])
+    assert not trial.leads_to([*words, AddAlternative("simpleStatement", "SWITCH")], [0], [1])
+    assert not trial.leads_to([*words, block], [0], [])

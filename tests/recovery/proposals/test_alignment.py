@@ -5,15 +5,15 @@ import pytest
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
+from recovery.forms.symbol_reader import Token
 from recovery.proposals.alignment import Aligner
 from recovery.proposals.phrases import Phraser
-from recovery.proposals.segmentation import Word
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))
 PHRASER = Phraser(RECOGNIZER)
 
 
-def words_of(text: str) -> list[Word]:
+def words_of(text: str) -> list[Token]:
     """The tokens of a text; SLIN and HOLD are meant as keywords that the grammar lacks."""
     lexer = RECOGNIZER.lexer
     lexemes = [x for x in lexer.lexemes(text) if lexer.kinds[x] != -1]

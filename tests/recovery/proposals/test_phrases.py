@@ -11,8 +11,8 @@ from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.network import network_of
 from grammar.parser.recognizer import Recognizer
+from recovery.forms.symbol_reader import Token
 from recovery.proposals.phrases import Phraser
-from recovery.proposals.segmentation import Word
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
 RECOGNIZER = Recognizer(PRELIMINARY)
@@ -20,7 +20,7 @@ PHRASER = Phraser(RECOGNIZER)
 TOKENS = "A 1 2.5 'B1' \"x\" #E TRUE + - * , . = == ( ) [ ] { } : NOT AND TO PTP".split()
 
 
-def words_of(text: str, *keywords: str) -> list[Word]:
+def words_of(text: str, *keywords: str) -> list[Token]:
     """The tokens of a text; names that are ``keywords`` are meant as such."""
     lexer = RECOGNIZER.lexer
     lexemes = [lexeme for lexeme in lexer.lexemes(text) if lexer.kinds[lexeme] != -1]
@@ -31,7 +31,7 @@ def phrases(text: str, *keywords: str) -> list[str]:
     return [" ".join(symbols) for symbols in PHRASER.phrases(words_of(text, *keywords))]
 
 
-def reads(phrase: Sequence[str], words: Sequence[Word]) -> bool:
+def reads(phrase: Sequence[str], words: Sequence[Token]) -> bool:
     """Whether a rule of these words, added to the grammar, is the tokens as a whole."""
     keywords = sorted({keyword for _, keyword in words if keyword})
     rule = AddRule(PRELIMINARY.start, f"probe\n    : {' '.join(phrase)}\n    ;")

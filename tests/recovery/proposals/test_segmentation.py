@@ -7,13 +7,14 @@ from grammar.notation.generate import GRAMMAR
 from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.rule_matcher import RuleMatcher
-from recovery.proposals.segmentation import Segmenter, Word
+from recovery.forms.symbol_reader import Token
+from recovery.proposals.segmentation import Segmenter
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))
 CUTTER = Segmenter(RuleMatcher(RECOGNIZER))
 
 
-def words_of(text: str, *keywords: str) -> list[Word]:
+def words_of(text: str, *keywords: str) -> list[Token]:
     """The tokens of a text; names that are ``keywords`` are meant as such."""
     lexer = RECOGNIZER.lexer
     lexemes = [lexeme for lexeme in lexer.lexemes(text) if lexer.kinds[lexeme] != SKIPPED]
