@@ -218,6 +218,14 @@ class Lexer:
         """Return whether the tokens of the kind have one text, which is no word."""
         return kind in self._signs
 
+    def has_value(self, kind: int) -> bool:
+        """Return whether the tokens of the kind have many texts: names, numbers, strings."""
+        return not (self.is_sign(kind) or self.is_keyword(kind))
+
+    def spelled(self, kind: int) -> str:
+        """Return a token as it is written in a rule: by name, or quoted if it is a sign."""
+        return f"'{self.display[kind]}'" if self.is_sign(kind) else self.names[kind]
+
     @cached_property
     def line_kind(self) -> int:
         """The kind of line ends; `ABSENT` if they are skipped or no token."""

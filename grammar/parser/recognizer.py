@@ -122,6 +122,11 @@ class Recognizer(Automaton):
         core = self._settled(state.core, state.tail)[0]
         return frozenset(self._sites(core))
 
+    def entered(self, state: State) -> frozenset[str]:
+        """Return the rules that can begin in a state."""
+        network = self.network
+        return frozenset(network.rule[e] for p, _ in self.sites(state) for e, _ in network.calls[p])
+
     def at(self, configuration: Configuration, state: State) -> State:
         """Return a state with one configuration, over the frames below the settled ``state``."""
         _, tail = self._settled(state.core, state.tail)

@@ -17,7 +17,7 @@ from recovery.clustering.edit_merging import merged_as_choice
 from recovery.clustering.edit_trial import EditTrial, TrialResult
 from recovery.clustering.file_trial import FileTrial
 from recovery.clustering.regression import ParsedFiles, no_parsed_files
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.proposals.candidates import Candidate, CandidateFinder
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import (

@@ -153,7 +153,7 @@ class OperandCover:
     def variable(self) -> str | None:
         """The narrowest rule of names with what may follow them, and of no other value."""
         matcher, name_kind = self.rules.matcher, self.lexer.name_kind
-        values = {*filter(matcher.is_operand, self.lexer.kind_of.values())} - {name_kind}
+        values = {*filter(self.lexer.has_value, self.lexer.kind_of.values())} - {name_kind}
         examples = [(name_kind,), *(o.kinds for o in self.rules.followed.values())]
         having = frozenset(self.rules.usual).intersection(*map(matcher.rules_for, examples))
         fitting = having.difference({self._name}, *(matcher.rules_for((k,)) for k in values))

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 from grammar.parser.recognizer import Recognizer, State
+from recovery.forms.symbols import Token
 from recovery.tuning import LONGEST_BEGINNING_KEPT, MOST_ANSWERS_KEPT, WORD_LIST_PART
 
 
@@ -88,7 +89,8 @@ class RuleMatcher:
     @cached_property
     def value_rules(self) -> frozenset[str]:
         """Rules that read a name as well as values of other kinds."""
-        kinds = [(k,) for k in self.recognizer.lexer.kind_of.values() if self.is_operand(k)]
+        lexer = self.recognizer.lexer
+        kinds = [(k,) for k in lexer.kind_of.values() if lexer.has_value(k)]
         others = frozenset[str]().union(*(self.rules_for(k) for k in kinds if k != self._a_name))
         return self.rules_for(self._a_name) & others
 
@@ -97,7 +99,12 @@ class RuleMatcher:
         is_word = self.recognizer.lexer.is_keyword(kind)
         return is_word and bool(self.rules_for((kind,)) - self.keyword_lists)
 
-    def is_operand(self, kind: int) -> bool:
-        """Return whether a token carries a value: a name, a number, a string."""
-        lexer = self.recognizer.lexer
-        return not (lexer.is_sign(kind) or lexer.is_keyword(kind))
+    def sign(self, token: Token) -> str | None:
+        """Return what a rule writes for a keyword or sign; ``None`` for a token with a value."""
+        kind, word = token
+        return None if word is None and self.recognizer.lexer.has_value(kind) else self.text(token)
+
+    def text(self, token: Token) -> str | None:
+        """Return what a rule writes for a token; ``None`` for what is no token."""
+        kind, word = token
+        return word or (self.recognizer.lexer.spelled(kind) if kind >= 0 else None)

@@ -50,10 +50,9 @@ def _samples(
         case Reference() | Literal():
             token = rules.grammar.token_of(element)
             kind = rules.lexer.kind_of[token]
-            if rules.matcher.is_operand(kind):
+            if rules.lexer.has_value(kind):
                 return [(Symbol("", Operand((kind,))),)]
-            is_word = rules.lexer.is_keyword(kind)
-            return [(Symbol(token if is_word else f"'{rules.lexer.display[kind]}'"),)]
+            return [(Symbol(rules.lexer.spelled(kind)),)]
     return []
 
 

@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from recovery.forms.operand_rules import OperandRules
-from recovery.forms.symbols import BRACKETS, UNKNOWN, Operand, Symbol, closer_of
+from recovery.forms.symbols import BRACKETS, UNKNOWN, Operand, Symbol, Token, closer_of
 
 # Signs behind a name at the head of a line.
 _BEHIND_NAMES = frozenset({"=", ".", "[", "(", ":"})
-#: A token of a line: its kind, and the word it is meant as where the grammar lacks that.
-Token = tuple[int, str | None]
 
 
 class SymbolReader:
@@ -77,10 +75,7 @@ class SymbolReader:
 
     def text(self, kind: int) -> str:
         """Return what a rule writes for a token."""
-        if kind <= 0:
-            return UNKNOWN
-        is_sign = self.lexer.is_sign(kind)
-        return f"'{self.lexer.display[kind]}'" if is_sign else self.lexer.names[kind]
+        return self.lexer.spelled(kind) if kind > 0 else UNKNOWN
 
     def _operand(
         self, tokens: Sequence[Token], at: int, before: Sequence[Symbol], *, atoms: bool

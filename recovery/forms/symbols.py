@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
+#: A token of a line: its kind, and the word it is meant as where the grammar lacks that.
+Token = tuple[int, str | None]
 #: The text of what is no token.
 UNKNOWN = "?"
 #: Signs that come in pairs.

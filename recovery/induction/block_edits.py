@@ -7,8 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from grammar.notation.edits import AddAlternative
-from recovery.forms.symbol_reader import Token
-from recovery.forms.symbols import Symbol
+from recovery.forms.symbols import Symbol, Token
 from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.steps import InferredStep

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cached_property
 from random import Random
 
-from grammar.parser.lexer import SKIPPED, Lexer
+from grammar.parser.lexer import Lexer
 from recovery.language import CorpusFile
+from recovery.proposals.blocks import lines_of
 from recovery.tuning import INNER_SHARE
 
 
@@ -41,7 +42,8 @@ class CorpusLines:
         having: dict[int, set[int]] = defaultdict(set)
         for place, file in enumerate(files):
             found = []
-            for line in _lines(file.text, lexer):
+            for lexemes in lines_of(file.text, lexer):
+                line = tuple(map(str.upper, lexemes))
                 number = numbers.setdefault(line, len(numbers))
                 if number == len(self.lines):
                     self.lines.append(line)
@@ -60,18 +62,3 @@ class CorpusLines:
         first = Counter(line[0] for line in self.lines)
         later = Counter(word for line in self.lines for word in line[1:])
         return frozenset(word for word in first if later[word] >= INNER_SHARE * first[word])
-
-
-def _lines(text: str, lexer: Lexer) -> Iterable[tuple[str, ...]]:
-    end = lexer.line_kind
-    line: list[str] = []
-    for lexeme in lexer.lexemes(text):
-        kind = lexer.kinds[lexeme]
-        if kind == end:
-            if line:
-                yield tuple(line)
-            line = []
-        elif kind != SKIPPED:
-            line.append(lexeme.upper())
-    if line:
-        yield tuple(line)

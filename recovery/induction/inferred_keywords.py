@@ -143,11 +143,9 @@ class InferredKeywords:
         self.lexer = lexer
         self.least = least, least_files
         self._types = frozenset(types)
-        self._values = frozenset(
-            kind
-            for kind in range(1, len(lexer.names))
-            if not (lexer.is_sign(kind) or lexer.is_keyword(kind))
-        ) - {lexer.line_kind}
+        self._values = frozenset(filter(lexer.has_value, range(1, len(lexer.names)))) - {
+            lexer.line_kind
+        }
         contexts = self._contexts()
         # where words are keywords however often they are names elsewhere
         heads = {

@@ -97,11 +97,8 @@ class LineHosts:
 
     def entered(self, number: int) -> frozenset[str]:
         """Rules that may begin where a line does."""
-        recognizer, network = self.at.recognizer, self.at.recognizer.network
-        sites = recognizer.sites(recognizer.restore(self.at.lines[number].form.before))
-        return frozenset(
-            network.rule[entry] for site in sites for entry, _ in network.calls[site[0]]
-        )
+        recognizer = self.at.recognizer
+        return recognizer.entered(recognizer.restore(self.at.lines[number].form.before))
 
     @cached_property
     def _hosts_of(self) -> dict[object, tuple[str, ...]]:

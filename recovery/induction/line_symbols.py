@@ -9,8 +9,8 @@ from itertools import pairwise
 from grammar.parser.failures import FailureContext
 from grammar.parser.recognizer import Recognizer, State
 from recovery.forms.operand_rules import OperandRules, bracket_pairs
-from recovery.forms.symbol_reader import SymbolReader, Token
-from recovery.forms.symbols import BRACKETS, Operand, Symbol
+from recovery.forms.symbol_reader import SymbolReader
+from recovery.forms.symbols import BRACKETS, Operand, Symbol, Token
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
 
@@ -86,23 +86,11 @@ class LineSymbols:
         """Return the text of a sign or word, or the name of another kind; empty for no token."""
         return self.lexer.display[token[0]] if token[0] > 0 else ""
 
-    def text(self, token: Token) -> str | None:
-        """Return the text that an edit writes for a word or sign; ``None`` for other tokens."""
-        kind, word = token
-        if word:
-            return word
-        if kind <= 0 or kind == self.lexer.line_kind:
-            return None
-        shown = self.lexer.display[kind]
-        if self.lexer.is_keyword(kind):
-            return self.lexer.names[kind]
-        return f"'{shown}'" if shown != self.lexer.names[kind] else None
-
     def ends_operand(self, tokens: Sequence[Token], at: int) -> bool:
         """Return whether an operand may end before an index."""
         kind, word = tokens[at - 1]
         return not word and (
-            (kind > 0 and self.rules.matcher.is_operand(kind))
+            (kind > 0 and self.lexer.has_value(kind))
             or self.shown(tokens[at - 1]) in BRACKETS.values()
         )
 
@@ -113,7 +101,7 @@ class LineSymbols:
             return False
         shown = self.shown(tokens[at])
         return (
-            (self.rules.matcher.is_operand(kind) and kind != self.lexer.line_kind)
+            (self.lexer.has_value(kind) and kind != self.lexer.line_kind)
             or shown in BRACKETS
             or self.rules.widest in self.rules.matcher.rules_for((kind,))
             or shown in PREFIXES

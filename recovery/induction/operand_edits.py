@@ -42,7 +42,7 @@ class OperandEdits:
         self.operator_lines = {n for ns in (*infix.values(), *prefix.values()) for n in ns}
         self.operators |= infix.keys() | prefix.keys()
         for text, members in infix.items():
-            heads = {self.at.text(self.at.tokens[n][0]) for n in members}
+            heads = {self.at.rules.matcher.sign(self.at.tokens[n][0]) for n in members}
             if text[0] != "'" and len(heads) == 1 and None not in heads:
                 at = ((self.at.tokens[n], self.at.lines[n].form.index) for n in members)
                 if all(self.at.opened(tokens, index) is None for tokens, index in at):
@@ -66,11 +66,11 @@ class OperandEdits:
     ) -> None:
         """Enter a line under the operator at which it seems to fail, if there is one."""
         tokens, index = self.at.tokens[number], self.at.lines[number].form.index
-        ahead = self.at.text(tokens[index - 1])
+        ahead = self.at.rules.matcher.sign(tokens[index - 1])
         is_sign = ahead is not None and self.at.shown(tokens[index - 1]) in PREFIXES
         if is_sign and self.at.begins_operand(tokens, index):
             prefix[str(ahead)].append(number)  # the sign of a number, as it seemed
-        text = self.at.text(tokens[index])
+        text = self.at.rules.matcher.sign(tokens[index])
         if not text or text == "','" or text.strip("'") in (*BRACKETS, *BRACKETS.values()):
             return
         if self.at.begins_operand(tokens, index + 1):
@@ -187,7 +187,8 @@ class OperandEdits:
             tokens, index = self.at.tokens[number], line.form.index
             if line.is_enormous or index >= len(tokens):
                 continue
-            rule = self.at.rules.bracketed.get((self.at.text(tokens[index]) or "").strip("'"))
+            sign = self.at.rules.matcher.sign(tokens[index]) or ""
+            rule = self.at.rules.bracketed.get(sign.strip("'"))
             if rule and rule not in self.at.rules.ladder and name in self.at.expected(number):
                 found[rule].append(number)
         count = {rule.name: len(rule.alternatives) for rule in self.at.grammar.rules}

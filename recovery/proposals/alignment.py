@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.proposals.collocations import last_two
 from recovery.proposals.phrases import Phraser
 from recovery.tuning import (
@@ -52,6 +52,7 @@ class Aligner:
 
     def __init__(self, phraser: Phraser) -> None:
         self._phraser = phraser
+        self._rows: dict[tuple[Token, ...], tuple[_Part, ...]] = {}
         self._columns: dict[_Phrases, tuple[Sequence[_Column], int]] = {}
         self._known: dict[tuple[_Phrases, frozenset[str]], list[tuple[str, ...]]] = {}
 
@@ -68,6 +69,7 @@ class Aligner:
             if len(self._known) >= MOST_ALIGNMENTS_KEPT:
                 self._known.clear()
                 self._columns.clear()
+                self._rows.clear()
             if key not in self._columns:
                 self._columns[key] = self._aligned(phrases)
             found = list(dict.fromkeys(self._spelled(*self._columns[key], near)))
@@ -85,12 +87,18 @@ class Aligner:
 
     def _aligned(self, phrases: Sequence[Sequence[Token]]) -> tuple[Sequence[_Column], int]:
         """Return the columns of the phrases and the number of rows; none if they do not align."""
-        cut = {tuple(_row(self._phraser, p)) for p in phrases} - {()}
+        cut = {self._row(tuple(p)) for p in phrases} - {()}
         rows = sorted(cut, key=_by_length)[:MOST_ALIGNED]
         columns = _columns(self._phraser, rows)
         if len(columns) > MOST_COLUMNS or not (columns and _belong_together(columns, len(rows))):
             return (), 0
         return columns, len(rows)
+
+    def _row(self, words: tuple[Token, ...]) -> tuple[_Part, ...]:
+        """Return the parts of a phrase, cached."""
+        if words not in self._rows:
+            self._rows[words] = tuple(_row(self._phraser, words))
+        return self._rows[words]
 
 
 def _belong_together(columns: Sequence[_Column], rows: int) -> bool:
@@ -110,7 +118,7 @@ def _row(phraser: Phraser, words: Sequence[Token]) -> list[_Part]:
     """Return the parts of a phrase; a list such as ``a , a , a`` is one part."""
     out: list[_Part] = []
     spans = phraser.segmenter.parts(words) or []
-    signs = [phraser.sign(span) for span in spans]
+    signs = [phraser.matcher.sign(span[0]) if len(span) == 1 else None for span in spans]
     for place, (span, sign) in enumerate(zip(spans, signs, strict=True)):
         # a keyword may be an operand (TRUE is a literal); a comma is none
         is_listed = "','" in signs[max(0, place - 1) : place + 2]

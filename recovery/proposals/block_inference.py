@@ -11,11 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from grammar.parser.lexer import SKIPPED
-from grammar.parser.recognizer import Recognizer
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.proposals.alignment import Aligner
-from recovery.proposals.blocks import BlockLines, SourceFile, find_blocks
+from recovery.proposals.blocks import BlockLines, SourceFile, find_blocks, lines_of
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import MOST_BLOCK_FORMS, MOST_BODIES
 
@@ -31,8 +29,8 @@ class Block:
 class BlockFinder:
     """Finds blocks in texts, for one grammar."""
 
-    def __init__(self, recognizer: Recognizer, profile: GrammarProfile, aligner: Aligner) -> None:
-        self.recognizer = recognizer
+    def __init__(self, profile: GrammarProfile, aligner: Aligner) -> None:
+        self.recognizer = profile.recognizer
         self.profile = profile
         self.vocabulary = profile.vocabulary
         self.aligner = aligner
@@ -62,20 +60,15 @@ class BlockFinder:
 
         A name that is alone on its line is meant as a keyword too.
         """
-        lexer, end = self.recognizer.lexer, self.recognizer.line_kind
-        line: list[tuple[int, str]] = []
-        for lexeme in (*lexer.lexemes(text), "\n"):
-            kind = lexer.kinds[lexeme]
-            if kind not in (SKIPPED, end):
-                line.append((kind, lexeme.upper()))
-            elif kind == end and line:
-                words = tuple(
-                    (k, w if k == lexer.name_kind and (w in meant or len(line) == 1) else None)
-                    for k, w in line
-                )
-                is_word = words[0][1] or lexer.is_keyword(words[0][0])
-                yield line[0][1] if is_word else "", words
-                line = []
+        lexer = self.recognizer.lexer
+        for line in lines_of(text, lexer):
+            kinds = map(lexer.kinds.__getitem__, line)
+            words = tuple(
+                (kind, w if kind == lexer.name_kind and (w in meant or len(line) == 1) else None)
+                for kind, w in zip(kinds, map(str.upper, line), strict=True)
+            )
+            is_word = words[0][1] or lexer.is_keyword(words[0][0])
+            yield line[0].upper() if is_word else "", words
 
     def _forms(self, block: BlockLines) -> Iterator[tuple[str, ...]]:
         end = self.profile.line_end

@@ -8,10 +8,11 @@ lines are only found right inside of such a block divide it.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from recovery.forms.symbol_reader import Token
+from grammar.parser.lexer import SKIPPED, Lexer
+from recovery.forms.symbols import Token
 from recovery.tuning import (
     BALANCED_FILES,
     BALANCED_ORIGINS,
@@ -57,6 +58,19 @@ class BlockLines:
     def words(self) -> frozenset[str]:
         """The words that lead lines which only such a block has."""
         return frozenset({self.opener, self.closer, *self.middles})
+
+
+def lines_of(text: str, lexer: Lexer) -> Iterator[tuple[str, ...]]:
+    """Yield the lines of a text that say something, as lexemes without blanks and comments."""
+    line: list[str] = []
+    for lexeme in (*lexer.lexemes(text), "\n"):
+        kind = lexer.kinds[lexeme]
+        if kind == lexer.line_kind:
+            if line:
+                yield tuple(line)
+            line = []
+        elif kind != SKIPPED:
+            line.append(lexeme)
 
 
 def find_blocks(

@@ -18,7 +18,7 @@ from typing import TypeVar
 from grammar.notation.addresses import Address
 from grammar.notation.edits import AddAlternative, Edit, Insert, Widen
 from grammar.parser.recognizer import Recognizer
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.proposals.alignment import Aligner
 from recovery.proposals.block_inference import Block, BlockFinder
 from recovery.proposals.edit_site import EditSite, LinePattern, RankedEdits
@@ -60,9 +60,9 @@ class CandidateFinder:
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
         self.profile = GrammarProfile(recognizer)
-        self.phraser = Phraser(recognizer)
+        self.phraser = Phraser(self.profile)
         self._aligner = Aligner(self.phraser)
-        self._blocks = BlockFinder(recognizer, self.profile, self._aligner)
+        self._blocks = BlockFinder(self.profile, self._aligner)
         self.similarity = Similarity(self.profile)
         self._site_finder = EditSiteFinder(self.profile, self.similarity, self.phraser)
         self._sites: dict[LinePattern, list[EditSite | RankedEdits]] = {}
@@ -82,7 +82,7 @@ class CandidateFinder:
         for number, line in enumerate(lines):
             for found in self._sites_of(line):
                 if isinstance(found, EditSite):
-                    first = self.phraser.sign(found.words[:1]) or ""
+                    first = self._sign(found.words) or ""
                     slots[found.kind, found.rule, found.place, first][number].append(found)
                 else:
                     rank, edits = found
@@ -159,6 +159,10 @@ class CandidateFinder:
             if not self.profile.is_left_recursive(edits[-1])
         ]
 
+    def _sign(self, words: Sequence[Token]) -> str | None:
+        """Return the keyword or sign with which words begin."""
+        return self.phraser.matcher.sign(words[0]) if words else None
+
     def _of_site(self, site: EditSite) -> Iterator[RankedEdits]:
         near = self.profile.near(site.rule)
         for symbols in self.phraser.phrases(site.words, near):
@@ -197,7 +201,7 @@ class CandidateFinder:
             case "lines":
                 ended = f"{' '.join(symbols)} {self.profile.line_end}"
                 yield rank, (*tokens, Insert(rule, place, f"({ended})*"))
-                if self.phraser.sign(words[:1]):
+                if self._sign(words):
                     for body in self.profile.bodies:
                         text = f"({ended} {' '.join(body)})"
                         rank += len(body)

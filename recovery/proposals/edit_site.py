@@ -10,7 +10,7 @@ from grammar.notation.edits import Edit
 from grammar.parser.failures import Form
 from grammar.parser.lazy_automaton import Configuration
 from grammar.parser.recognizer import Recognizer, State
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.tuning import DEEPEST_STACK, LONGEST_LINE
 
 #: Complete edits with their rank, which estimates how much they accept.

@@ -13,7 +13,7 @@ from grammar.parser.failures import Form
 from grammar.parser.lazy_automaton import Configuration
 from grammar.parser.recognizer import State
 from grammar.parser.shortest_paths import Paths
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.proposals.edit_site import EditSite, RankedEdits, configurations_of, places_of
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.phrases import Phraser
@@ -58,7 +58,7 @@ class LineSiteFinder:
                     yield rank, (Insert(rule, place, f"{recognizer.lexer.line_end}*"),)
                     continue
                 for line_rule in line_rules:
-                    fits = line_rule in profile.loops or self.phraser.is_unused(line_rule)
+                    fits = line_rule in profile.loops or profile.is_free(line_rule)
                     worth = (
                         rank + self.phraser.breadth([line_rule]) + (0 if fits else UNLIKELY_COST)
                     )
@@ -70,13 +70,7 @@ class LineSiteFinder:
     def _known_elsewhere(self, before: State, line_rules: tuple[str, ...]) -> Iterator[RankedEdits]:
         """Yield edits that accept rules for whole lines as another alternative here."""
         recognizer, profile = self.recognizer, self.profile
-        network = recognizer.network
-        called = {
-            network.rule[entry]
-            for site in configurations_of(recognizer, before)
-            for entry, _ in network.calls[site[0]]
-        }
-        for rule in sorted(called & profile.loops & profile.of_lines):
+        for rule in sorted(recognizer.entered(before) & profile.loops & profile.of_lines):
             for line_rule in line_rules:
                 if line_rule not in profile.of_lines or line_rule == rule:
                     continue
@@ -120,13 +114,7 @@ class LineSiteFinder:
 
     def _as_alternatives(self, before: State, words: list[Token]) -> Iterator[EditSite]:
         """Yield the line as an alternative of a rule whose alternatives are whole lines."""
-        network = self.recognizer.network
-        rules = {
-            network.rule[e]
-            for site in configurations_of(self.recognizer, before)
-            for e, _ in network.calls[site[0]]
-        }
-        for rule in sorted(rules):
+        for rule in sorted(self.recognizer.entered(before)):
             end = self.profile.closing(rule)
             if end is not None:
                 rank = self.profile.width(rule) + SITE_COST

@@ -11,13 +11,12 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from itertools import islice, product
 
-from grammar.parser.recognizer import Recognizer
 from recovery.forms.rule_matcher import RuleMatcher
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.proposals.collocations import Before, Collocations, symbols_in
+from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.segmentation import Segmenter
 from recovery.tuning import (
-    HUB_ALTERNATIVES,
     LONGEST_PHRASE,
     MOST_COMBINATIONS,
     MOST_NEAR_RULES,
@@ -31,33 +30,23 @@ from recovery.tuning import (
 class Phraser:
     """Writes phrases with the rules of one grammar."""
 
-    def __init__(self, recognizer: Recognizer) -> None:
-        self.recognizer = recognizer
+    def __init__(self, profile: GrammarProfile) -> None:
+        self.profile = profile
+        self.recognizer = recognizer = profile.recognizer
         self.collocations = Collocations(recognizer)
         self.matcher = RuleMatcher(recognizer)
         self.segmenter = Segmenter(self.matcher)
         self._breadths: dict[tuple[str, ...], int] = {}
         self._known_levels: dict[tuple[frozenset[str], frozenset[str]], tuple[str, ...]] = {}
 
-    @cached_property
-    def _callers(self) -> dict[str, frozenset[str]]:
-        """For each rule the other rules that call it."""
-        network = self.recognizer.network
-        callers: dict[str, set[str]] = {name: set() for name in network.entry}
-        for position, calls in enumerate(network.calls):
-            for entry, _ in calls:
-                callers[network.rule[entry]].add(network.rule[position])
-        return {name: frozenset(found - {name}) for name, found in callers.items()}
-
     def _is_one_level(self, rule: str) -> bool:
         """Return whether a rule is only an intermediate level of its callers (``product``).
 
         One of many alternatives of a rule is no such level.
         """
-        known = self.recognizer.grammar.by_name
-        return len(self._callers[rule]) == 1 and all(
-            rule in self._wider[caller] and len(known[caller].alternatives) < HUB_ALTERNATIVES
-            for caller in self._callers[rule]
+        callers = self.profile.callers[rule] - {rule}
+        return len(callers) == 1 and all(
+            rule in self._wider[caller] and not self.profile.is_hub(caller) for caller in callers
         )
 
     @cached_property
@@ -102,10 +91,6 @@ class Phraser:
         found = self.matcher.rules_for((kind,)) - self.matcher.keyword_lists
         return any(rule in self._wider[reader] for reader in found)
 
-    def is_unused(self, rule: str) -> bool:
-        """Return whether nothing calls a rule."""
-        return not self._uses[rule]
-
     def breadth(self, symbols: Sequence[str]) -> int:
         """Return how much a phrase accepts: nothing for tokens, more for more general rules.
 
@@ -132,12 +117,6 @@ class Phraser:
         )
         return cost + (NARROWER_RULE_COST if is_narrower else 0)
 
-    def sign(self, span: Sequence[Token]) -> str | None:
-        """Return the text of a keyword or sign; ``None`` for a token with a value."""
-        if len(span) != 1 or (span[0][1] is None and self.matcher.is_operand(span[0][0])):
-            return None
-        return self._token(span[0])
-
     def stands_for_a_rule(self, span: Sequence[Token], *, is_listed: bool) -> bool:
         """Return whether some rule reads the span by itself (``TRUE`` is a literal too).
 
@@ -161,7 +140,7 @@ class Phraser:
             return ()
         kinds = {tuple(kind for kind, _ in span) for span in spans}
         rules = frozenset.intersection(*map(self.matcher.rules_for, kinds))
-        token = self._token(spans[0][0]) if len(kinds) == 1 and len(spans[0]) == 1 else None
+        token = self.matcher.text(spans[0][0]) if len(kinds) == 1 and len(spans[0]) == 1 else None
         if not rules:
             return (token,) if token else ()
         return self._levels_of(rules, near)
@@ -187,7 +166,7 @@ class Phraser:
         parts = self.segmenter.parts(words)
         if parts is None:
             return
-        plain = [self._token(word) for word in words]
+        plain = [self.matcher.text(word) for word in words]
         if all(plain):
             tokens = tuple(token for token in plain if token)
             yield tokens
@@ -229,10 +208,10 @@ class Phraser:
     ) -> tuple[str, ...]:
         """Return the symbols for a part: its token, or rules from narrow to wide."""
         if len(part) == 1:
-            token = self._token(part[0])
+            token = self.matcher.text(part[0])
             if token is None or part[0][1] is not None:
                 return () if token is None else (token,)
-            if not self.matcher.is_operand(part[0][0]):
+            if not self.recognizer.lexer.has_value(part[0][0]):
                 if not self.recognizer.lexer.is_keyword(part[0][0]):
                     return (token,)
                 kinds = (part[0][0],)
@@ -244,7 +223,7 @@ class Phraser:
             return ()
         rules = self.matcher.rules_for(tuple(kind for kind, _ in part))
         if not rules:
-            token = self._token(part[0])
+            token = self.matcher.text(part[0])
             return (token,) if len(part) == 1 and token else ()
         return self._levels_of(rules, near)
 
@@ -263,17 +242,6 @@ class Phraser:
         )
         wide = max(rules, key=lambda r: (self._uses[r], len(self._wider[r] & rules), r))
         return tuple(dict.fromkeys((narrow, *close, wide)))
-
-    def _token(self, word: Token) -> str | None:
-        kind, keyword = word
-        if keyword is not None:
-            return keyword
-        return None if kind < 0 else self.spelled(kind)
-
-    def spelled(self, kind: int) -> str:
-        """Return a token as it is written in a rule: by name, or quoted if it is a sign."""
-        lexer = self.recognizer.lexer
-        return f"'{lexer.display[kind]}'" if lexer.is_sign(kind) else lexer.names[kind]
 
 
 def _as_list(symbols: tuple[str, ...]) -> tuple[str, ...]:

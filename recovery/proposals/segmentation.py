@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from recovery.forms.rule_matcher import RuleMatcher
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.tuning import (
     LONGEST_SEGMENTED,
     MOST_ANSWERS_KEPT,
@@ -75,7 +75,7 @@ class Segmenter:
         for kind, _ in part:
             text = lexer.display[kind]
             depth += (text in _OPENING) - (text in _CLOSING)
-            is_value = depth == 0 and (matcher.is_operand(kind) or matcher.may_be_a_name(kind))
+            is_value = depth == 0 and (lexer.has_value(kind) or matcher.may_be_a_name(kind))
             seams += (depth == 0 and text == ",") + (is_value and was_value)
             was_value = is_value
         return seams

@@ -16,7 +16,7 @@ from grammar.notation.model import Alternative, Element, Group, Reference, Repea
 from grammar.parser.failures import Form
 from grammar.parser.lazy_automaton import Configuration
 from grammar.parser.recognizer import State
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.proposals.edit_site import (
     EditSite,
     LinePattern,
@@ -93,9 +93,7 @@ class EditSiteFinder:
 
     def block_rules(self, line: LinePattern) -> list[str]:
         """Return the rules for lines or blocks that can begin where a line begins."""
-        network = self.recognizer.network
-        sites = self.recognizer.sites(self.recognizer.restore(line.form.before))
-        rules = {network.rule[entry] for site in sites for entry, _ in network.calls[site[0]]}
+        rules = self.recognizer.entered(self.recognizer.restore(line.form.before))
         return sorted(rules & (self.profile.of_lines | self.profile.blocks))
 
     def _sequence_at(self, site: Configuration, place: Address) -> Alternative:
@@ -283,11 +281,10 @@ class EditSiteFinder:
         before = self.profile.sequence(rule, place[:-1]).elements[place[-1] - 2]
         if not isinstance(before, Reference) or before.is_token:
             return
-        kind, keyword = words[0]
-        if keyword is None and kind < 0:
-            return
-        if before.name in self.phraser.matcher.rules_for(tuple(k for k, _ in words[1:])):
-            text = f"({keyword or self.phraser.spelled(kind)} {before.name})*"
+        matcher = self.phraser.matcher
+        sign, kinds = matcher.text(words[0]), tuple(kind for kind, _ in words[1:])
+        if sign is not None and before.name in matcher.rules_for(kinds):
+            text = f"({sign} {before.name})*"
             rank = self._insertion_width(rule) + REPETITION_COST
             rank += self.phraser.breadth([before.name]) // REPETITION_BREADTH_PART
             rank -= self.profile.same_text_bonus(text)

@@ -4,7 +4,7 @@ import pytest
 
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
-from grammar.parser.lexer import SKIPPED
+from grammar.parser.lexer import ERROR, SKIPPED
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.rule_matcher import RuleMatcher
 
@@ -47,10 +47,19 @@ def test_a_block_is_known_by_the_line_that_opens_it() -> None:
     assert "halt" not in READERS.multi_line_rules(kinds_of("HALT"))
 
 
-def test_what_carries_a_value_is_an_operand() -> None:
-    """Names and numbers are operands, words and signs are none."""
+def test_what_a_rule_writes_for_a_token() -> None:
+    """Words and signs are written as such, values by the name of their token."""
     [name], [number], [word], [sign] = map(kinds_of, ("A", "1", "PTP", "="))
-    assert [True, True, False, False] == [READERS.is_operand(k) for k in (name, number, word, sign)]
+    tokens = [
+        (name, None),
+        (number, None),
+        (word, None),
+        (sign, None),
+        (name, "NEW"),
+        (ERROR, None),
+    ]
+    assert ["NAME", "INTEGER", "PTP", "'='", "NEW", None] == list(map(READERS.text, tokens))
+    assert [None, None, "PTP", "'='", "NEW", None] == list(map(READERS.sign, tokens))
 
 
 def test_rules_of_values_read_names_and_more() -> None:

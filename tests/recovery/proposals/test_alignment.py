@@ -5,12 +5,13 @@ import pytest
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.proposals.alignment import Aligner
+from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.phrases import Phraser
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))
-PHRASER = Phraser(RECOGNIZER)
+PHRASER = Phraser(GrammarProfile(RECOGNIZER))
 
 
 def words_of(text: str) -> list[Token]:
@@ -59,7 +60,7 @@ def test_operands_that_no_rule_reads_alike_are_parts_of_their_own() -> None:
 def test_a_word_that_is_a_name_elsewhere_is_a_word_between_operands() -> None:
     """DELAY may be a name; beside another operand it is none, and `DELAY = 1` assigns nothing."""
     grammar = Recognizer(read_file(GRAMMAR))
-    phraser = Phraser(grammar)
+    phraser = Phraser(GrammarProfile(grammar))
     kinds = [[(k, None) for k in grammar.kinds(t)[:-1]] for t in ("HALT A DELAY=1", "HALT B")]
     assert ("HALT", "variable", "(DELAY '=' number)?") in [
         tuple("variable" if s in ("name", "variable", "expression") else s for s in symbols)

@@ -20,8 +20,8 @@ def blocks(
     meant: frozenset[str] = frozenset(),
     grammar: Grammar = NO_WHILE,
 ) -> list[str]:
-    recognizer = Recognizer(grammar)
-    finder = BlockFinder(recognizer, GrammarProfile(recognizer), Aligner(Phraser(recognizer)))
+    profile = GrammarProfile(Recognizer(grammar))
+    finder = BlockFinder(profile, Aligner(Phraser(profile)))
     texts = [f"DEF A()\n{body}\nEND\n" for body in bodies]
     return [" ".join(block.symbols) for block in finder.find(opener, texts, meant)]
 

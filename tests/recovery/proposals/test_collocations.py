@@ -51,7 +51,7 @@ SPACE : ' '+ -> skip ;
 """)
 RECOGNIZER = Recognizer(WHOLE)
 HABITS = Collocations(RECOGNIZER)
-PHRASER = Phraser(RECOGNIZER)
+PHRASER = Phraser(GrammarProfile(RECOGNIZER))
 LAYOUT = GrammarProfile(RECOGNIZER)
 
 

@@ -11,12 +11,13 @@ from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.network import network_of
 from grammar.parser.recognizer import Recognizer
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
+from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.phrases import Phraser
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
 RECOGNIZER = Recognizer(PRELIMINARY)
-PHRASER = Phraser(RECOGNIZER)
+PHRASER = Phraser(GrammarProfile(RECOGNIZER))
 TOKENS = "A 1 2.5 'B1' \"x\" #E TRUE + - * , . = == ( ) [ ] { } : NOT AND TO PTP".split()
 
 
@@ -129,7 +130,7 @@ SPACE : ' ' -> skip ;
 
 def test_phrases_are_made_for_any_grammar() -> None:
     """Nothing is taken from KRL: a grammar of three tokens has its phrases too."""
-    phraser = Phraser(Recognizer(read(SMALL)))
+    phraser = Phraser(GrammarProfile(Recognizer(read(SMALL))))
     kinds = phraser.recognizer.kinds("A B")[:-1]
     assert {"pair", "unused"} <= phraser.matcher.rules_for(tuple(kinds))
     written = [" ".join(symbols) for symbols in phraser.phrases([(k, None) for k in kinds])]

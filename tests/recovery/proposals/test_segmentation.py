@@ -7,7 +7,7 @@ from grammar.notation.generate import GRAMMAR
 from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.rule_matcher import RuleMatcher
-from recovery.forms.symbol_reader import Token
+from recovery.forms.symbols import Token
 from recovery.proposals.segmentation import Segmenter
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))
