@@ -109,8 +109,8 @@ def untyped_value(path: Sequence[str | int]) -> LinkError:
 
 
 def mismatched(parameter: Type) -> LinkError:
-    """Return the error for a variable that is passed :OUT but is not `is_referable`."""
-    return LinkError(f"an argument :OUT of another type than {parameter}")
+    """Return the error for an argument that has to be `is_referable` and is not."""
+    return LinkError(f"an argument of another type than {parameter}")
 
 
 # --------------------------------------------------------------------------------- data lists

@@ -341,13 +341,13 @@ class Signatures:
                     use.constants.setdefault(constant.upper(), constant)
                 case Text() | Array(element=Scalar(name="CHAR")):
                     use.is_text = True
-                    brackets = "[]"
                 case Array(element=element, sizes=sizes):
                     use.types.append(element)
                     brackets = f"[{',' * (len(sizes) - 1)}]"
                 case _:
                     use.types.append(type_)
         kind = self._kind(name, use) or self._number(use)
+        brackets = "[]" if kind.is_text else brackets
         is_out = bool(given) and all(
             is_variable and str(_element(type_)) == kind.name for type_, is_variable in given
         )

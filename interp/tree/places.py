@@ -11,8 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from grammar.semantics.types import UNKNOWN, Array, Structure, Type
+from grammar.semantics.types import CHAR, UNKNOWN, Array, Structure, Type
 from interp.port.requests import Path
+from interp.program.variables import is_referable, mismatched
 from interp.values.faults import LinkError, fault
 from interp.values.values import (
     ArrayValue,
@@ -23,6 +24,7 @@ from interp.values.values import (
     empty,
     fill,
     member_place,
+    type_of,
 )
 
 
@@ -98,13 +100,16 @@ def is_left_out(place: Place) -> bool:
 
 
 def sized(type_: Type, value: Value) -> Type:
-    """Return the type of a formal array ``X[]`` with the sizes of its argument."""
-    if isinstance(type_, Array) and None in type_.sizes:
-        if isinstance(value, ArrayValue):
-            return Array(type_.element, value.sizes)
-        if isinstance(value, str):
-            return Array(type_.element, (max(1, len(value)),))
-    return type_
+    """Return the type of a formal array ``X[]`` with the sizes of its argument.
+
+    Raises `LinkError` if that is no such array.
+    """
+    if not isinstance(type_, Array) or None not in type_.sizes:
+        return type_
+    given = Array(CHAR, (max(1, len(value)),)) if isinstance(value, str) else type_of(value)
+    if not is_referable(type_, given):
+        raise mismatched(type_)
+    return given
 
 
 def member(base: Place, name: str) -> Place:

@@ -245,14 +245,14 @@ class Calls(CodeMaker):
                 case Reference(Array() as made):
                     pass
                 case _:
-                    raise self._emitter.refuse(_other_type(type_))
+                    raise self._emitter.unlinked(str(mismatched(type_)))
         made = self._emitter.closed(made)
         assert isinstance(made, Array), "made of one"
         if (made.element, len(made.sizes)) != (
             self._emitter.closed(type_.element),
             len(type_.sizes),
         ):
-            raise self._emitter.refuse(_other_type(type_))
+            raise self._emitter.unlinked(str(mismatched(type_)))
         kept = FrameCells(self._writer.temporary(made), made)
         self._memory.refer_below(kept, behind)
         self._memory.store_block(made, value, behind + 1)
@@ -262,14 +262,10 @@ class Calls(CodeMaker):
     def _copied_to_buffer(self, type_: Array, value: View) -> Bound:
         """Replace the view on top by one of a copy of the array; its size is not constant."""
         if not is_view_of(value, self._emitter.closed(type_.element), len(type_.sizes)):
-            raise self._emitter.refuse(_other_type(type_))
+            raise self._emitter.unlinked(str(mismatched(type_)))
         buffer = self._writer.copy_buffer(value.element, value.dimensions, value.most)
         self._emit(Op.COPY_VIEW, buffer.offset, buffer.type)
         return value.most
-
-
-def _other_type(type_: Type) -> str:
-    return f"an argument of another type than {type_}"
 
 
 def _calls(nodes: Sequence[ast.Expression | None]) -> bool:

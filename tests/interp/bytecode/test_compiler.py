@@ -276,7 +276,15 @@ def test_endless_loops(body: str) -> None:
         ("DEF main()\nDECL Strange S\nS=1\nEND\n", "the type of S is not known"),
         (
             "DEF main()\nDECL REAL X\nSub(X)\nEND\nDEF Sub(I:OUT)\nDECL INT I\nEND\n",
-            "an argument :OUT of another type than INT",
+            "an argument of another type than INT",
+        ),
+        *(
+            (
+                f"DEF main()\nDECL INT I\nI=1\nSub({given})\nEND\n"
+                "DEF Sub(P[]:IN)\nDECL FRAME P[]\nEND\n",
+                "an argument of another type than FRAME[]",
+            )
+            for given in ("I", '"abc"', "I>2", "$NULLFRAME")
         ),
     ],
 )

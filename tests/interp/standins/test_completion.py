@@ -263,6 +263,15 @@ def test_status_structure_of_a_package() -> None:
 
 
 @pytest.mark.parametrize("executor", EXECUTORS)
+def test_arguments_of_two_types(executor: str) -> None:
+    """A routine called with a text and with a frame takes one of them, on every executor."""
+    body = 'show ($NULLFRAME )\nshow ($NULLFRAME:$NULLFRAME )\nshow ("abc" )\n'
+    run = _run(_main(body), executor)
+    called = [one.fields.get("arguments") for one in run.events if one.kind == "call"]
+    assert ["$NULLFRAME", "$NULLFRAME:$NULLFRAME"] == called
+
+
+@pytest.mark.parametrize("executor", EXECUTORS)
 def test_array_passed_out(executor: str) -> None:
     """A whole array can be passed to an undeclared routine."""
     program = _main(f"{HOME}OPT_Fill (N[],R[,],2 )\n", declared="INT N[4]\nREAL R[2,2]\n")
