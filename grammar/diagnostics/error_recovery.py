@@ -236,7 +236,8 @@ class _Recovery:
             return self._write(line, "")
         if is_at_end:
             return self._close_all(cause)
-        if any(self._write(free, cause.closer) for free in self._free_lines(cause.line + 1, line)):
+        closer = _ONCE.get(cause.closer, cause.closer)
+        if any(self._write(free, closer) for free in self._free_lines(cause.line + 1, line)):
             return True
         if cause.word in OUTERMOST:
             return False
@@ -259,7 +260,7 @@ class _Recovery:
                 self._write(last, text.rpartition(",")[0] if _TYPE.match(text) else "")
         self._text = self._text.rstrip()
         while block is not None:
-            self._text += f"\n{block.closer}"
+            self._text += f"\n{_ONCE.get(block.closer, block.closer)}"
             block = block.outer
         self._text += "\n"
         return True

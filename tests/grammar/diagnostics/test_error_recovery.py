@@ -50,6 +50,7 @@ def routines(module: ast.Module | None) -> list[str]:
         ("ELSE", "ELS", 8),
         ("FOR COUNT", "FRO COUNT", 5),
         ("ENDFOR", "ENDFO", 11),
+        ("      HALT\n", "      REPEAT\n        HALT\n        \n", 12),
         ("CASE 1", "CSE 1", 13),
         ("ENDSWITCH", "ENDSWICH", 17),
         ("END\n\nDEF", "EEND\n\nDEF", 18),
