@@ -60,9 +60,17 @@ class _Placed(Generic[_File]):
 _Part: TypeAlias = list[_Placed[_File]]
 
 
-def _placed(file: _File) -> _Placed[_File]:
-    *folders, name = file.path.split("/")
-    return _Placed(file, tuple(folders), tuple(map(str.casefold, folders)), name.casefold())
+def _placed(files: Iterable[_File]) -> Iterator[_Placed[_File]]:
+    """Yield the places of files; those in one folder share it."""
+
+    @cache
+    def folders(path: str, slash: str) -> tuple[_Folder, _Folder]:
+        written = tuple(path.split("/")) if slash else ()
+        return written, tuple(map(str.casefold, written))
+
+    for file in files:
+        folder, slash, name = file.path.rpartition("/")
+        yield _Placed(file, *folders(folder, slash), name.casefold())
 
 
 def projects_of(files: Iterable[_Candidate]) -> Iterator[tuple[str, bool, list[_Candidate]]]:
@@ -70,12 +78,14 @@ def projects_of(files: Iterable[_Candidate]) -> Iterator[tuple[str, bool, list[_
 
     Few of the files are read: those whose calls decide.
     """
+    files = list(files)
+    stems = {_stem(file.path.rpartition("/")[2].casefold()) for file in files}
 
     @cache
     def calls(file: _Candidate) -> Set[str]:
         read = read_source(file)
         text = read.text if isinstance(read, SourceFile) else ""
-        return {name.casefold() for name in _CALL.findall(text) if name}
+        return stems.intersection(map(str.casefold, _CALL.findall(text)))
 
     yield from grouped(files, calls)
 
@@ -85,11 +95,11 @@ def grouped(
 ) -> Iterator[tuple[str, bool, list[_File]]]:
     """Yield the files of each project with its root, and whether the root holds a drive.
 
-    ``calls`` are the names that a file calls, in lower case. Without it, files outside a controller
-    are taken to be one project, unless they have several $CONFIG lists.
+    ``calls`` are the names of files that a file calls, in lower case. Without it, files outside a
+    controller are taken to be one project, unless they have several $CONFIG lists.
     """
     by_archive: dict[_Folder, list[_Placed[_File]]] = defaultdict(list)
-    for placed in map(_placed, files):
+    for placed in _placed(files):
         depths = [d for d, name in enumerate(placed.folded, 1) if is_archive(name)]
         by_archive[placed.folded[: max(depths, default=0)]].append(placed)
     for _, inside in sorted(by_archive.items()):
@@ -167,11 +177,15 @@ def _calls_between(
     having: dict[str, set[int]] = defaultdict(set)
     for number, part in enumerate(parts):
         for placed in part:
-            having[placed.name.rpartition(".")[0]].add(number)
+            having[_stem(placed.name)].add(number)
     for number, part in enumerate(parts):
         for placed in part:
             for name in calls(placed.file) & having.keys():
                 yield from ((number, other) for other in having[name] if other != number)
+
+
+def _stem(name: str) -> str:
+    return name.rpartition(".")[0]
 
 
 def _connected_to_first(pairs: Iterable[tuple[int, int]]) -> set[int]:
