@@ -21,13 +21,13 @@ _TABLE: Final[dict[str, Any]] = tomllib.loads(
 PACKAGES: Final = tuple(_TABLE["packages"])
 #: The packages that cases run.
 OF_CASES: Final = tuple(name for name in PACKAGES if name != "machine")
-#: Patterns of the modules and functions of which no mutant is drawn.
+#: Patterns of the modules, functions and values of which no mutant is drawn.
 LEFT_OUT: Final = tuple(name for row in _TABLE["left_out"] for name in row["names"])
 _LEFT_OUT: Final = re.compile("|".join(map(translate, LEFT_OUT)))
 
 
 def is_left_out(name: str) -> bool:
-    """Return whether no mutant is drawn of a module or function, ``interp.values.values.empty``."""
+    """Return whether no mutant is drawn of a module, function or value: ``interp.values.poses``."""
     return _LEFT_OUT.match(name) is not None
 
 

@@ -182,7 +182,7 @@ def test_modules_decide_semantics() -> None:
 
 
 def _functions(root: Path, path: Path) -> Iterator[str]:
-    """Yield all functions and classes of a file with their modules, and the module itself."""
+    """Yield functions, classes and names of values of a file with their modules, and the module."""
     module = ".".join(path.with_suffix("").parts)
     yield module
     left: list[tuple[str, ast.AST]] = [
@@ -194,6 +194,8 @@ def _functions(root: Path, path: Path) -> Iterator[str]:
             if isinstance(one, ast.FunctionDef | ast.ClassDef):
                 yield f"{around}.{one.name}"
                 left.append((f"{around}.{one.name}", one))
+            elif isinstance(one, ast.AnnAssign) and isinstance(one.target, ast.Name):
+                yield f"{around}.{one.target.id}"
 
 
 def test_what_is_left_out_exists() -> None:
