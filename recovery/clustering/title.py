@@ -11,11 +11,10 @@ from grammar.notation.edits import MakeOptional
 from grammar.parser.failures import FailureContext
 from grammar.parser.lexer import EOF, ERROR
 from grammar.parser.recognizer import Recognizer
+from recovery.brackets import BRACKETS
 from recovery.clustering.cause import Proposal
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import MOST_DISTINCT, MOST_EXPECTED, MOST_LISTED
-
-_CLOSER = {"(": ")", "[": "]", "{": "}"}
 
 
 class TitleWriter:
@@ -124,7 +123,9 @@ class TitleWriter:
         before = line.form.kinds[line.form.index - 1]
         if bracket:
             is_first = before == self._kind_of.get(bracket)
-            where = f"right behind '{bracket}'" if is_first else f"in '{bracket}{_CLOSER[bracket]}'"
+            where = (
+                f"right behind '{bracket}'" if is_first else f"in '{bracket}{BRACKETS[bracket]}'"
+            )
             return f"{lead} with {came} {where}" if lead else f"{came} {where}"
         if line.form.index == 1:
             return f"{lead or self._phrase(before)} followed by {came}"

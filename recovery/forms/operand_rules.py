@@ -10,9 +10,10 @@ from itertools import pairwise
 from grammar.notation.addresses import sequences
 from grammar.notation.model import Alternative, Element, Literal, Reference, Repeat, reached, walk
 from grammar.parser.recognizer import Recognizer
+from recovery.brackets import BRACKETS
 from recovery.forms.keywords import Vocabulary
 from recovery.forms.rule_matcher import RuleMatcher
-from recovery.forms.symbols import BRACKETS, Operand
+from recovery.forms.symbols import Operand
 
 
 class OperandRules:

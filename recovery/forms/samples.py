@@ -8,9 +8,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
+from recovery.brackets import closer_of
 from recovery.forms.lists import LONG_LIST
 from recovery.forms.operand_rules import OperandRules
-from recovery.forms.symbols import CLOSERS, Operand, Symbol, closer_of
+from recovery.forms.symbols import CLOSERS, Operand, Symbol
 from recovery.tuning import MOST_SAMPLES
 
 

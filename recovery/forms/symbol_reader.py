@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from recovery.brackets import closer_of
 from recovery.forms.operand_rules import OperandRules
-from recovery.forms.symbols import BRACKETS, UNKNOWN, Operand, Symbol, Token, closer_of
+from recovery.forms.symbols import UNKNOWN, Operand, Symbol, Token
 
 # Signs behind a name at the head of a line.
 _BEHIND_NAMES = frozenset({"=", ".", "[", "(", ":"})
@@ -126,5 +127,5 @@ class SymbolReader:
         """Return the index of the closing bracket for the one at an index, if there is one."""
         display = self.lexer.display
         shown = (display[kind] if kind > 0 else "" for kind, _ in tokens[at:])
-        length = closer_of(shown, BRACKETS)
+        length = closer_of(shown)
         return None if length is None else at + length

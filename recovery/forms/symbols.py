@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
+from recovery.brackets import BRACKETS
+
 #: A token of a line: its kind, and the word it is meant as where the grammar lacks that.
 Token = tuple[int, str | None]
 #: The text of what is no token.
 UNKNOWN = "?"
-#: Signs that come in pairs.
-BRACKETS: Mapping[str, str] = {"(": ")", "[": "]", "{": "}"}
-#: The same as a rule writes them.
+#: The closing bracket of each opening one, as a rule writes them.
 CLOSERS: Mapping[str, str] = {
     f"'{opening}'": f"'{closing}'" for opening, closing in BRACKETS.items()
 }
@@ -67,21 +67,3 @@ def operands_of(lines: Iterable[tuple[Symbol, ...]]) -> list[tuple[int, ...]]:
     """Return the distinct operands of lines and of their groups, as kinds of token."""
     operands = (symbol.operand for line in lines for symbol in _walk(line))
     return list(dict.fromkeys(operand.kinds for operand in operands if operand))
-
-
-def closer_of(texts: Iterable[str], brackets: Mapping[str, str]) -> int | None:
-    """Return the index of the bracket that closes the first text; ``None`` without one.
-
-    ``brackets`` maps each opening bracket to the closing one.
-    """
-    texts = iter(texts)
-    opening = next(texts)
-    closing = brackets.get(opening)
-    if closing is None:
-        return None
-    depth = 1
-    for place, text in enumerate(texts, 1):
-        depth += (text == opening) - (text == closing)
-        if not depth:
-            return place
-    return None

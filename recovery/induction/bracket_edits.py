@@ -7,10 +7,11 @@ from collections.abc import Iterator, Sequence
 
 from grammar.notation.edits import Edit, Insert, Replace
 from grammar.notation.model import Element, Reference, walk
+from recovery.brackets import BRACKETS
 from recovery.forms.lists import split_at_commas
 from recovery.forms.operand_rules import bracket_pairs
 from recovery.forms.samples import samples_of
-from recovery.forms.symbols import BRACKETS, Symbol
+from recovery.forms.symbols import Symbol
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.operand_edits import OperandEdits
 from recovery.induction.steps import InferredStep

@@ -10,7 +10,7 @@ from itertools import islice
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.failures import Failure
 from grammar.parser.recognizer import Recognizer, State
-from recovery.forms.symbols import BRACKETS
+from recovery.brackets import BRACKETS, CLOSING
 from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.induction.steps import Evidence
 from recovery.language import CorpusFile
@@ -122,6 +122,6 @@ def _is_balanced(words: Sequence[str]) -> bool:
     for word in words:
         if word in BRACKETS:
             open_.append(BRACKETS[word])
-        elif word in BRACKETS.values() and (not open_ or open_.pop() != word):
+        elif word in CLOSING and (not open_ or open_.pop() != word):
             return False
     return not open_

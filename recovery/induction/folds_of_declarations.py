@@ -9,9 +9,9 @@ from itertools import pairwise, takewhile
 from grammar.notation.addresses import Address, sequences
 from grammar.notation.edits import AddAlternative, Insert, Replace
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat, Rule
+from recovery.brackets import BRACKETS
 from recovery.forms.operand_rules import bracket_pairs
 from recovery.forms.samples import samples_of
-from recovery.forms.symbols import BRACKETS
 from recovery.induction.grammar_view import GrammarView, sign_of
 from recovery.induction.steps import InferredStep
 from recovery.tuning import FOLDING_SYMBOLS

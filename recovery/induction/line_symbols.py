@@ -8,9 +8,10 @@ from itertools import pairwise
 
 from grammar.parser.failures import FailureContext
 from grammar.parser.recognizer import Recognizer, State
+from recovery.brackets import BRACKETS, CLOSING, left_open
 from recovery.forms.operand_rules import OperandRules, bracket_pairs
 from recovery.forms.symbol_reader import SymbolReader
-from recovery.forms.symbols import BRACKETS, Operand, Symbol, Token
+from recovery.forms.symbols import Operand, Symbol, Token
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
 
@@ -90,8 +91,7 @@ class LineSymbols:
         """Return whether an operand may end before an index."""
         kind, word = tokens[at - 1]
         return not word and (
-            (kind > 0 and self.lexer.has_value(kind))
-            or self.shown(tokens[at - 1]) in BRACKETS.values()
+            (kind > 0 and self.lexer.has_value(kind)) or self.shown(tokens[at - 1]) in CLOSING
         )
 
     def begins_operand(self, tokens: Sequence[Token], at: int) -> bool:
@@ -119,16 +119,7 @@ class LineSymbols:
 
     def opened(self, tokens: Sequence[Token], index: int) -> int | None:
         """Return the index of the innermost bracket that is open at a token."""
-        depth = 0
-        for place in range(min(index, len(tokens)) - 1, -1, -1):
-            shown = self.shown(tokens[place])
-            if shown in BRACKETS.values():
-                depth += 1
-            elif shown in BRACKETS:
-                if not depth:
-                    return place
-                depth -= 1
-        return None
+        return left_open(list(map(self.shown, tokens[:index])))
 
     def writing(self, number: int, sign: str) -> str | None:
         """Return the innermost active rule that writes the bracket."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from grammar.notation.addresses import Address, sequence_at
 from grammar.notation.edits import AddAlternative, AddRule, Edit, Replace, Widen
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat
-from recovery.forms.symbols import BRACKETS
+from recovery.brackets import BRACKETS
 from recovery.induction.line_symbols import PREFIXES, LineSymbols
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms

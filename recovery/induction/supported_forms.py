@@ -9,8 +9,9 @@ from itertools import pairwise
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.notation.model import Element, Reference, walk
+from recovery.brackets import CLOSING
 from recovery.forms.loose import is_loose
-from recovery.forms.symbols import BRACKETS, UNKNOWN, Symbol, all_texts, operands_of
+from recovery.forms.symbols import UNKNOWN, Symbol, all_texts, operands_of
 from recovery.forms.writer import FormWriter
 from recovery.induction.line_symbols import WORD, LineSymbols
 from recovery.tuning import LOST_RULE_SYMBOLS, WORD_LIST_ALTERNATIVES
@@ -93,7 +94,7 @@ class SupportedForms:
         """Return the sort of a symbol: its text, or for an operand the bracket at its end."""
         kinds = symbol.operand.kinds if symbol.operand else ()
         shown = self.at.shown((kinds[-1], None)) if kinds else ""
-        return symbol.text or (shown if shown in BRACKETS.values() else "_")
+        return symbol.text or (shown if shown in CLOSING else "_")
 
     def finer_sort(self, symbol: Symbol) -> str:
         """Return a finer sort: operands by their rule, and whether they begin with a name."""

@@ -15,8 +15,9 @@ from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from itertools import cycle, islice, zip_longest
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
+from recovery.brackets import BRACKETS
 from recovery.negatives.fragments import fragment_pool
-from recovery.negatives.language_facts import CLOSER_OF, adjacent, violation
+from recovery.negatives.language_facts import adjacent, violation
 from recovery.negatives.negatives import Negative
 from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, SourceToken, line
 
@@ -221,9 +222,9 @@ def _split_line(program: list[str], chance: random.Random) -> list[str] | None:
 
 #: Words and signs that a line cannot do without.
 _NEEDED = frozenset("IF THEN FOR TO SEC WHEN DO DECL INTERRUPT =".split())
-_BRACKETS = (*CLOSER_OF, *CLOSER_OF.values())
-_OPENER_OF = {closer: opener for opener, closer in CLOSER_OF.items()}
-_SWAPPED = {"=": "==", "==": "=", **CLOSER_OF, **_OPENER_OF}
+_BRACKETS = (*BRACKETS, *BRACKETS.values())
+_OPENER_OF = {closer: opener for opener, closer in BRACKETS.items()}
+_SWAPPED = {"=": "==", "==": "=", **BRACKETS, **_OPENER_OF}
 _SIGNS = (*"+ - * / = == <> < >= . , :".split(), *_BRACKETS)
 _WORDS = sorted(
     RESERVED | RESERVED_FIRST | set("TRUE INT CHAR DO TO STEP WHEN WAIT LIN INTERRUPT".split())

@@ -20,6 +20,7 @@ from itertools import pairwise
 
 from grammar.blocks import BLOCKS, CLOSERS, OUTERMOST
 from grammar.motion_kinds import MOTIONS, PLAIN_MOTIONS
+from recovery.brackets import BRACKETS, CLOSING
 from recovery.negatives.tokens import RESERVED, SourceLine, lines
 
 
@@ -76,11 +77,6 @@ def _neighbours(line: SourceLine) -> str | None:
     return None
 
 
-#: The closing bracket of each opening one.
-CLOSER_OF: Mapping[str, str] = {"(": ")", "[": "]", "{": "}"}
-_CLOSING = frozenset(CLOSER_OF.values())
-
-
 def _strings(line: SourceLine) -> str | None:
     is_open = any(token.text == '"' for token in line.tokens)
     return "a string is closed on its line" if is_open else None
@@ -89,9 +85,9 @@ def _strings(line: SourceLine) -> str | None:
 def _brackets(line: SourceLine) -> str | None:
     expected: list[str] = []
     for kind in line.kinds:
-        if kind in CLOSER_OF:
-            expected.append(CLOSER_OF[kind])
-        elif kind in _CLOSING and (not expected or expected.pop() != kind):
+        if kind in BRACKETS:
+            expected.append(BRACKETS[kind])
+        elif kind in CLOSING and (not expected or expected.pop() != kind):
             return "a closing bracket belongs to an opening one of its form on the same line"
     return "a bracket is closed on its line" if expected else None
 
@@ -100,7 +96,7 @@ def _behind_closer(kinds: Sequence[str]) -> int:
     """Return the index after the bracket that closes the first one."""
     depth = 0
     for index, kind in enumerate(kinds):
-        depth += (kind in CLOSER_OF) - (kind in _CLOSING)
+        depth += (kind in BRACKETS) - (kind in CLOSING)
         if not depth:
             return index + 1
     return len(kinds)
@@ -138,7 +134,7 @@ def _operands(kinds: Sequence[str]) -> str | None:
 def _can_follow(operand: str, kind: str) -> bool:
     if kind in ("(", "["):  # arguments and indices
         return operand in ("name", "]") or (operand, kind) == (")", "[")
-    return kind in _OPERATORS or kind in _CLOSING
+    return kind in _OPERATORS or kind in CLOSING
 
 
 # ---------------------------------------------------------------------------- forms of lines

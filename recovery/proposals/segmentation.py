@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from recovery.brackets import BRACKETS, CLOSING
 from recovery.forms.rule_matcher import RuleMatcher
 from recovery.forms.symbols import Token
 from recovery.tuning import (
@@ -17,8 +18,6 @@ from recovery.tuning import (
     SEAM_COST,
     TOKEN_COST,
 )
-
-_OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 
 
 class Segmenter:
@@ -74,7 +73,7 @@ class Segmenter:
                 return int(not is_operand and not matcher.is_more_than_a_name(kinds))
         for kind, _ in part:
             text = lexer.display[kind]
-            depth += (text in _OPENING) - (text in _CLOSING)
+            depth += (text in BRACKETS) - (text in CLOSING)
             is_value = depth == 0 and (lexer.has_value(kind) or matcher.may_be_a_name(kind))
             seams += (depth == 0 and text == ",") + (is_value and was_value)
             was_value = is_value

@@ -14,6 +14,7 @@ from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, PREFIXES, SIGNATURES
 from grammar.parser.lexer import EOF, Lexer
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Speller
+from recovery.brackets import BRACKETS
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import MOST_NAMES
 
@@ -24,7 +25,6 @@ _LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 # Forms of names, numbers and texts; for each kind the first one that the lexer accepts is used.
 _FORMS = ("{letter}", "{number}", "{number}.0", '"{letter}"', "#{letter}")
 _UNKNOWN = "?!@^~`|\\"
-_CLOSING = {"(": ")", "[": "]", "{": "}"}
 _INDENT = "  "
 
 
@@ -172,9 +172,9 @@ class TokenRenderer:
             signed = text in ("-", "+") and (
                 not operand_before or (in_braces and last not in ")]}")
             )
-            if text in _CLOSING:
+            if text in BRACKETS:
                 inside.append(text)
-            elif inside and text == _CLOSING[inside[-1]]:
+            elif inside and text == BRACKETS[inside[-1]]:
                 inside.pop()
 
     def _is_operand(self, token: AbstractToken) -> bool:

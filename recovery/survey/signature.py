@@ -7,11 +7,12 @@ causes (the first word of the line, the offending token, the rule being read) an
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from grammar.parser.failures import FailureContext, Form
 from grammar.parser.lexer import EOF, ERROR, Lexer
+from recovery.brackets import left_open
 
 _ELLIPSIS = "…"
 
@@ -62,9 +63,9 @@ def signature_of(
     offender = meant.get(index) or _shown(lexer, kinds[index])
     if 0 in meant and index == 1:
         offender = lead  # the line fails after its first word because of that word
-    bracket = _open_bracket(lexer, kinds[:index])
-    is_first = index > 0 and _shown(lexer, kinds[index - 1]) == bracket
-    return Signature(context.rule, lead, bracket, offender, is_first)
+    place = left_open([_shown(lexer, kind) for kind in kinds[:index]])
+    bracket = "" if place is None else _shown(lexer, kinds[place])
+    return Signature(context.rule, lead, bracket, offender, place == index - 1)
 
 
 def _shown(lexer: Lexer, kind: int) -> str:
@@ -72,17 +73,3 @@ def _shown(lexer: Lexer, kind: int) -> str:
         return "unknown character"
     known = {lexer.line_kind: "end of line", EOF: "end of file", lexer.name_kind: "name"}
     return known.get(kind) or lexer.display[kind]
-
-
-def _open_bracket(lexer: Lexer, kinds: Sequence[int]) -> str:
-    """Return the innermost bracket that is open at the end of some tokens."""
-    closed = 0
-    for kind in reversed(kinds):
-        text = lexer.display[kind] if kind > 0 else ""
-        if text in (")", "]", "}"):
-            closed += 1
-        elif text in ("(", "[", "{"):
-            if not closed:
-                return text
-            closed -= 1
-    return ""
