@@ -76,20 +76,15 @@ def _with_torques_beside(machine: "MachineData", path: Path) -> "MachineData":
 
 def read_machine_file(path: Path) -> "MachineData":
     """Return the arm in a $machine.dat, if its kinematics can be solved. Raises `InputError`."""
-    from interp.robot.kinematics.arms import kinematics_of
+    from grammar.syntax.source import Source
     from interp.robot.kinematics.data_list import DataListError
     from interp.robot.kinematics.machine_data import MachineDataError
-    from interp.robot.kinematics.machine_reader import read_machine
+    from interp.robot.models.stand_in import understood
     from support.files.decode import decode
     from support.files.untrusted import read_bytes
 
-    source = decode(read_bytes(path))
-    if isinstance(source, str):
-        raise InputError(f"{path}: not machine data: {source}")
+    read = decode(read_bytes(path))
+    if isinstance(read, str):
+        raise InputError(f"{path}: not machine data: {read}")
     with as_input_errors(DataListError, MachineDataError):
-        machine = read_machine(source.text, str(path))
-    try:
-        kinematics_of(machine)
-    except MachineDataError as error:
-        raise InputError(f"{path}: {error}") from error
-    return machine
+        return understood(Source(read.text, str(path)))

@@ -29,6 +29,7 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
         yield f"stand-ins: {summary(used)}"
     if done.machine_note and (used or done.machine_note != usual):
         yield f"arm: {done.machine_note}"
+    yield from islice(_repeated(program), _MOST_LISTED)
     skipped = done.controller.skipped
     for (file, number), error in islice(skipped.items(), _MOST_LISTED):
         yield f"skipped: {file}:{number}: {error}"
@@ -47,6 +48,21 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
             yield f"waited for: {line}"
         if not done.controller.automatic_inputs.is_on:
             yield from _waiting(done.outcome, program)
+
+
+def _repeated(program: "CheckedProgram") -> Iterator[str]:
+    """Yield which files contradict others: they declare the same names for all modules."""
+    if not program.project.clashes:
+        return
+    from grammar.check.names.duplicate_names import repeated
+
+    for path, some in repeated(program.project).items():
+        for mine, first, more in some:
+            unit = program.unit_of(path)
+            if unit is not None and first.module is not None:
+                line, _ = unit.source.place(mine.symbol.span[0])
+                names = f"{mine.symbol.name} and {more} more" if more else mine.symbol.name
+                yield f"declared twice: {path}:{line}: {names}, also in {first.module.path}"
 
 
 def _waiting(outcome: "RunOutcome", program: "CheckedProgram") -> Iterator[str]:

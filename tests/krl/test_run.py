@@ -18,6 +18,7 @@ import pytest
 from interp import session
 from interp.executors import available
 from interp.program.load import Limits
+from interp.robot.models import model_file
 from interp.session import RunResult, RunSetup, run_program
 from krl.cli import main
 
@@ -219,6 +220,48 @@ def test_machine_data_that_are_not_understood(run: Run, tmp_path: Path) -> None:
     (tmp_path / "$machine.dat").write_text(text)
     said = "$MAIN_AXIS is #SS; only an articulated arm (#NR) is supported: KR6R900 SIZED is used"
     assert f"arm: $machine.dat:3: {said} instead\n" == run(INI)[2]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("REAL $LENGTH_B", "0.0", "$LENGTH_B is 0: the arm has no upper arm"),
+        ("REAL $LENGTH_A", "1.0E30", "$LENGTH_A has a length of 1e+30 mm"),
+        ("FRAME $TX3P3", "{X 0.0,Z 9.0E30}", "$TX3P3 has a length of 9e+30 mm"),
+    ],
+)
+def test_arm_that_cannot_be(run: Run, tmp_path: Path, name: str, value: str, said: str) -> None:
+    """One line names file and line of the length, of a project and of --machine."""
+    lines = model_file("kr6r900.dat").read_text("utf-8").splitlines()
+    place = next(n for n, line in enumerate(lines) if line.startswith(f"{name}="))
+    lines[place] = f"{name}={value}"
+    (tmp_path / "$machine.dat").write_text("\n".join(lines), "utf-8")
+    at = f"$machine.dat:{place + 1}: {said}"
+    assert f"arm: {at}: KR6R900 SIZED is used instead\n" == run(INI)[2]
+    given = tmp_path / "$machine.dat"
+    assert (2, f"krl: {tmp_path}/{at}\n") == run(INI, "--machine", str(given))[::2]
+
+
+def test_two_lists_of_a_controller(run: Run, tmp_path: Path) -> None:
+    """Machine data in Mada count; one line for each other list names its file and line."""
+    arm = model_file("kr6r900.dat").read_text("utf-8")
+    config = "DEFDAT $CONFIG PUBLIC\nDECL GLOBAL INT one=1\nDECL GLOBAL INT two=2\nENDDAT\n"
+    for path, text in {
+        "R1/Archive/$machine.dat": arm.replace("$LENGTH_A=", "$LENGTH_A=9"),
+        "R1/Mada/$machine.dat": arm,
+        "R1/Program/$config.dat": config,
+        "R1/System/$config.dat": config,
+        "R1/Program/go.src": f"DEF go ( )\n{INI}PTP_REL {{A1 1}}\nEND\n",
+    }.items():
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text(text, "utf-8")
+    status, _, err = run(None, str(tmp_path / "R1/Program/go.src"), "--robot", "kinematic")
+    assert 0 == status
+    machine, names = err.splitlines()
+    assert machine.startswith("declared twice: R1/Mada/$machine.dat:")
+    assert machine.endswith(", also in R1/Archive/$machine.dat")
+    other = "R1/Program/$config.dat"
+    assert f"declared twice: R1/System/$config.dat:2: one and 1 more, also in {other}" == names
 
 
 def test_machine_data_without_an_arm(run: Run, tmp_path: Path) -> None:

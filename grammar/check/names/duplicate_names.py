@@ -6,7 +6,7 @@ therefore only reported if the files are laid out like the drive of a controller
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from grammar.check.analysis.context import Context
@@ -29,8 +29,10 @@ def check(context: Context) -> Iterator[Diagnostic]:
         for inner, outer in routine.scope.shadowed():
             if outer.module is not None and inner.symbol.kind is not Kind.ROUTINE:
                 yield _hides(context, inner, outer)
-    for mine, first in _clashing(context.project).get(context.module, ()):
-        message = f"{mine.symbol.name} is declared for everybody in another module already"
+    for mine, first, more in repeated(context.project).get(context.module.path, ()):
+        names = f"{mine.symbol.name} and {more} more" if more else mine.symbol.name
+        verb = "are" if more else "is"
+        message = f"{names} {verb} declared for everybody in another module already"
         reason = f"in {first.module.path}" if first.module else ""
         yield context.finding(
             "declared-twice", mine.symbol.span, message, reason=reason, severity="warning"
@@ -59,13 +61,23 @@ def _hides(context: Context, inner: Found, outer: Found) -> Diagnostic:
 
 
 @lru_cache(maxsize=1)
-def _clashing(project: Project) -> Mapping[Module, list[tuple[Found, Found]]]:
-    """Yield the declarations for all modules that repeat one of an earlier module."""
-    found: dict[Module, list[tuple[Found, Found]]] = {}
+def repeated(project: Project) -> Mapping[str, Sequence[tuple[Found, Found, int]]]:
+    """Return by path which declarations for all modules repeat those of an earlier module.
+
+    For each such module these are the first one, the one that it repeats, and how many more follow.
+    """
+    found: dict[str, dict[Module | None, list[tuple[Found, Found]]]] = {}
     for clash in project.clashes if project.is_controller else ():
         if clash.space is not Space.LABEL:
             first, *others = clash.declarations
             for other in others:
                 if other.module is not None:
-                    found.setdefault(other.module, []).append((other, first))
-    return found
+                    of_module = found.setdefault(other.module.path, {})
+                    of_module.setdefault(first.module, []).append((other, first))
+    return {
+        path: [
+            (*min(some, key=lambda pair: pair[0].symbol.span), len(some) - 1)
+            for some in of_module.values()
+        ]
+        for path, of_module in found.items()
+    }

@@ -253,11 +253,6 @@ class CentralWrist:
 
     def _check_lengths(self) -> None:
         machine = self.machine
-        frames = (machine.tiroro, machine.tx3p3, machine.tflwp)
-        lengths = [machine.length_a, machine.length_b, *(x for one in frames for x in one.position)]
-        longest = max(map(abs, lengths))
-        if not longest < _FAR:
-            raise MachineDataError(f"the arm has a length of {longest:g} mm")
         if machine.length_b < _MARGIN:
             raise MachineDataError(f"$LENGTH_B is {machine.length_b:g}: the arm has no upper arm")
         if math.hypot(self._forearm[0], self._forearm[2]) < _MARGIN:

@@ -53,6 +53,14 @@ def line_of(text: str, name: str) -> int | None:
     return next((n for n in range(len(lines), 0, -1) if assignment.match(lines[n - 1])), None)
 
 
+def located(message: str, text: str, path: str) -> str:
+    """Return a message about a data list with its path, and the line of the variable in it."""
+    name = re.search(r"\$\w+(\[\d+\])?", message)
+    line = line_of(text, name[0]) if name else None
+    where = path if line is None else f"{path}:{line}"
+    return f"{where}: {message}" if path else message
+
+
 def _tolerant(text: str, path: str) -> ast.Module:
     """Return the syntax tree of the readable lines."""
     dropped = 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import reduce
@@ -16,7 +15,7 @@ from interp.robot.kinematics.data_list import (
     DataListError,
     Key,
     Value,
-    line_of,
+    located,
     read_data_list,
 )
 from interp.robot.kinematics.machine_data import (
@@ -300,10 +299,8 @@ class _Reader:
             raise self._error(f"{name} is {shown}; only {what} is supported")
 
     def _error(self, what: str) -> MachineDataError:
-        """Return an error that begins with the name of a variable, with its line if it has one."""
-        place = line_of(self._text_of_file, re.split(r"[ .]", what, maxsplit=1)[0])
-        where = self._path if place is None else f"{self._path}:{place}"
-        return MachineDataError(f"{where}: {what}" if self._path else what)
+        """Return an error about a variable, with its line if it has one."""
+        return MachineDataError(located(what, self._text_of_file, self._path))
 
 
 def _held(axes: tuple[Axis, ...], palletising: Palletising) -> tuple[Axis, ...]:

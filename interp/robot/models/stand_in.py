@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Final
 
 from grammar.syntax.source import Source
 from interp.robot.kinematics.arms import kinematics_of
-from interp.robot.kinematics.data_list import DataListError
+from interp.robot.kinematics.data_list import DataListError, located
 from interp.robot.kinematics.machine_data import (
     ROBOT_AXES,
     MachineData,
@@ -79,13 +79,14 @@ _DECIMALS: Final = 3
 def machine_data_of(sources: Iterable[Source]) -> Source | None:
     """Return the machine data of an arm among the files of a project, ``None`` if there is none.
 
-    The dollar sign in its name may be missing, because some tools that copy files drop it. A file
-    without $LENGTH_A is taken only where no other has it, and not from STEU, whose file is not
-    about the arm.
+    The dollar sign in its name may be missing, because some tools that copy files drop it. Of
+    several, the one in Mada counts. A file without $LENGTH_A is taken only where no other has it,
+    and not from STEU, whose file is not about the arm.
     """
     named = [
         one for one in sources if one.kind == "dat" and one.name.upper().lstrip("$") == "MACHINE"
     ]
+    named.sort(key=lambda one: PurePosixPath(one.path.upper()).parent.name != "MADA")
     whole = [one for one in named if "$LENGTH_A" in one.text.upper()]
     others = [one for one in named if "STEU" not in PurePosixPath(one.path.upper()).parts]
     return next(iter(whole + others), None)
@@ -97,7 +98,7 @@ def understood(source: Source) -> MachineData:
     try:
         kinematics_of(machine)
     except MachineDataError as error:
-        raise MachineDataError(f"{source.path}: {error}") from error
+        raise MachineDataError(located(str(error), source.text, source.path)) from error
     return machine
 
 

@@ -63,6 +63,17 @@ def test_projects_see_nothing_of_each_other(tmp_path: Path) -> None:
     assert {"two"} == wrong
 
 
+def test_names_that_two_lists_declare(tmp_path: Path) -> None:
+    """A list that a controller has twice is one finding, in the later file."""
+    text = "DEFDAT $CONFIG PUBLIC\nDECL GLOBAL INT one=1\nDECL GLOBAL INT two=2\nENDDAT\n"
+    for folder in ("Program", "System"):
+        lay(tmp_path / "KRC" / "R1" / folder, **{"$config__dat": text})
+    (found,) = check(tmp_path).diagnostics
+    assert ("KRL104", 2) == (found.code, found.region.line)
+    assert "one and 1 more are declared for everybody" in found.message
+    assert "System" in found.path
+
+
 def test_archives_are_checked(tmp_path: Path) -> None:
     """Members of an archive are files like others."""
     archive = tmp_path / "backup.zip"

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.central_wrist import CentralWrist
 from interp.robot.kinematics.machine_data import MachineData, MachineDataError
 from interp.robot.kinematics.machine_reader import read_machine
@@ -264,11 +265,12 @@ def test_wrists_that_are_not_central(machine_text: Callable[..., str], line: str
     [
         ("$LENGTH_B=0.0", "LENGTH_B is 0: the arm has no upper arm"),
         ("$LENGTH_B=-5.0", "LENGTH_B is -5: the arm has no upper arm"),
-        ("$LENGTH_A=1.0E200", r"the arm has a length of 1e\+200 mm"),
+        ("$LENGTH_A=1.0E200", r"LENGTH_A has a length of 1e\+200 mm"),
+        ("$DH_5={DHART_D 1.0E30}", r"DH_5 has a length of 1e\+30 mm"),
         ("$TX3P3={X 0.0,Y 9.0,Z 0.0,A 0.0,B 90.0,C 0.0}", "the arm has no forearm"),
     ],
 )
 def test_lengths_of_no_arm(machine_text: Callable[..., str], line: str, said: str) -> None:
     """An arm that could reach nothing, or whose reach cannot be computed, is told by one line."""
     with pytest.raises(MachineDataError, match=said):
-        CentralWrist(read_machine(machine_text(line)))
+        kinematics_of(read_machine(machine_text(line)))
