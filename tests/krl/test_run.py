@@ -247,7 +247,7 @@ def test_two_lists_of_a_controller(run: Run, tmp_path: Path) -> None:
     arm = model_file("kr6r900.dat").read_text("utf-8")
     config = "DEFDAT $CONFIG PUBLIC\nDECL GLOBAL INT one=1\nDECL GLOBAL INT two=2\nENDDAT\n"
     for path, text in {
-        "R1/Archive/$machine.dat": arm.replace("$LENGTH_A=", "$LENGTH_A=9"),
+        "R1/Archive/$machine.dat": arm.replace("$LENGTH_B=455", "$LENGTH_B=0"),
         "R1/Mada/$machine.dat": arm,
         "R1/Program/$config.dat": config,
         "R1/System/$config.dat": config,
