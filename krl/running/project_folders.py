@@ -23,13 +23,14 @@ def project_root(path: Path) -> Path:
     place = path.resolve()
     folder = place if place.is_dir() else place.parent
     shown = f"{printable(place.as_posix())}/"
-    depths = [
-        root.count("/")
+    level = folder.as_posix().rstrip("/").count("/")
+    steps = (
+        level - root.count("/")
         for root, _, members in projects_of(files_around(folder, _MOST))
         if any(f"{one.path}/".startswith(shown) for one in members)
-    ]
-    ways = (*reversed(folder.parents), folder)
-    return _as_given(ways[min([*depths, len(folder.parents)])], path)
+    )
+    up = max(steps, default=0)
+    return _as_given(folder.parents[up - 1] if up > 0 else folder, path)
 
 
 def _as_given(root: Path, path: Path) -> Path:
