@@ -146,7 +146,11 @@ def _joined(
     for folder in sorted(every, key=len, reverse=True):
         parts = _joined_in(own.get(folder, []), below.pop(folder, []), calls)
         below[folder[:-1]] += parts
-    return below[()]
+    numbers = {id(placed): number for number, part in enumerate(below[()]) for placed in part}
+    found: dict[int, _Part[_File]] = defaultdict(list)
+    for placed in files:  # in their order
+        found[numbers[id(placed)]].append(placed)
+    return [*found.values()]
 
 
 def _joined_in(
