@@ -7,7 +7,7 @@ generated and no file is read again, so a candidate costs milliseconds.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from grammar.notation.edits import AddRule, AddToken, Edit, Preamble, RemoveRule, SetComment, apply
@@ -236,12 +236,23 @@ class EditTrial:
             for _, start, kinds in self.read_by(wider, edits, short)
         )
 
-    def leads_to(self, edits: Sequence[Edit], mended: Iterable[int], others: Iterable[int]) -> bool:
-        """Return whether one of the ``others`` can be read right behind a mended line."""
+    def leads_to(
+        self, edits: Sequence[Edit], mended: Iterable[int], others: Collection[int]
+    ) -> bool:
+        """Return whether ``others`` may only be readable because of a mended line before them.
+
+        That is so if one can be read right behind it, or if it is no line of a loop: read once more
+        it leads to another state, or cannot be read.
+        """
         wider = self.wider(edits)
-        if wider is None:
+        if wider is None or not others:
             return False
-        ends = {wider.run(start, line)[0] for _, start, line in self.read_by(wider, edits, mended)}
+        ends = set()
+        for _, start, line in self.read_by(wider, edits, mended):
+            end, _ = wider.run(start, line)
+            if wider.run(end, line) != (end, None):
+                return True
+            ends.add(end)
         behind = [line for _, _, line in self.read_by(wider, edits, others)]
         return any(wider.run(end, line)[1] is None for end in ends for line in behind)
 

@@ -296,7 +296,7 @@ def test_large_recognisers_are_forgotten(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_an_edit_leads_to_lines_that_can_follow_what_it_mends() -> None:
-    """The end of a block can follow its beginning, and nothing else that is mended."""
+    """The end of a block follows its beginning; what can be read again and again leads nowhere."""
     found = survey_texts([("a", program("SWITCH\nENDSWITCH A"))], PRELIMINARY)
     lines = [
         LinePattern(found.forms[failed.form], ((0, failed.words[0]),))
