@@ -236,7 +236,7 @@ class _Recovery:
             return self._write(line, "")
         if is_at_end:
             return self._close_all(cause)
-        closer = _ONCE.get(cause.closer, cause.closer)
+        closer = _closing_line(cause)
         if any(self._write(free, closer) for free in self._free_lines(cause.line + 1, line)):
             return True
         if cause.word in OUTERMOST:
@@ -260,7 +260,7 @@ class _Recovery:
                 self._write(last, text.rpartition(",")[0] if _TYPE.match(text) else "")
         self._text = self._text.rstrip()
         while block is not None:
-            self._text += f"\n{_ONCE.get(block.closer, block.closer)}"
+            self._text += f"\n{_closing_line(block)}"
             block = block.outer
         self._text += "\n"
         return True
@@ -294,6 +294,10 @@ class _Recovery:
             self._text[:start] + text.ljust(len(written)) + self._text[start + len(written) :]
         )
         return True
+
+
+def _closing_line(block: OpenBlock) -> str:
+    return _ONCE.get(block.closer, block.closer)
 
 
 def _is_like_structure(line: str) -> bool:

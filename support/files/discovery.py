@@ -11,6 +11,7 @@ import os
 import stat
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
@@ -116,11 +117,12 @@ def files_around(folder: Path, most: int) -> list[Found]:
             if most < 0:
                 return found
             for entry in listed:
-                if entry.is_dir(follow_symlinks=False):
-                    if entry.path != str(inner) and not _ignored(entry.name):
-                        pending += [] if _is_link(entry) else [entry.path]
-                elif entry.name.lower().endswith(SUFFIXES) and entry.is_file(follow_symlinks=False):
-                    more.append(entry.path)
+                with suppress(OSError):  # it may be gone meanwhile
+                    if entry.is_dir(follow_symlinks=False):
+                        if not (entry.path == str(inner) or _ignored(entry.name)):
+                            pending += [] if _is_link(entry) else [entry.path]
+                    elif _is_program(entry.name) and entry.is_file(follow_symlinks=False):
+                        more.append(entry.path)
         found += [Found(printable(Path(one).as_posix()), "", 0, Path(one), None) for one in more]
         inner = outer
     return found
@@ -336,7 +338,7 @@ def _is_backup(listed: list[os.DirEntry[str]]) -> bool:
 
 def _has_programs(listed: list[os.DirEntry[str]]) -> bool:
     """Return whether a folder has programs itself, so that its folders are no origins."""
-    return any(entry.name.lower().endswith(SUFFIXES) for entry in listed)
+    return any(_is_program(entry.name) for entry in listed)
 
 
 def _is_corpus(listed: list[os.DirEntry[str]]) -> bool:
@@ -351,8 +353,12 @@ def _origin(folder: Path) -> str:
     return printable(f"{owner}/{repository}" if owner and mark and repository else name)
 
 
+def _is_program(name: str) -> bool:
+    return name.lower().endswith(SUFFIXES)
+
+
 def _wanted(name: str) -> bool:
-    return name.lower().endswith(SUFFIXES) or is_archive(name)
+    return _is_program(name) or is_archive(name)
 
 
 def _ignored(folder: str) -> bool:

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from support.files import archives
+from support.files import archives, discovery
 from support.files.discovery import Found, IngestError, Skipped, discover, read
 
 PROGRAM = b"DEF A()\nEND\n"
@@ -483,3 +483,17 @@ def test_a_file_that_is_no_candidate(tmp_path: Path) -> None:
     file = tmp_path / "a.txt"
     assert f"{file.as_posix()}: {reason}" == error_of(file)
     assert {"a.txt": reason} == skipped(file, tmp_path / "b.src")
+
+
+def test_a_folder_that_goes_away_hides_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Folders of others may be removed while the files around a program are listed."""
+    (tmp_path / "gone").mkdir()
+    (tmp_path / "a.src").touch()
+
+    def gone(entry: os.DirEntry[str]) -> bool:
+        raise FileNotFoundError(entry.path)
+
+    monkeypatch.setattr(discovery, "_is_link", gone)
+    assert [tmp_path / "a.src"] == [one.file for one in discovery.files_around(tmp_path, 2)]
