@@ -57,12 +57,12 @@ def _repeated(program: "CheckedProgram") -> Iterator[str]:
     from grammar.check.names.duplicate_names import repeated
 
     for path, some in repeated(program.project).items():
-        for mine, first, more in some:
+        for one in some:
             unit = program.unit_of(path)
-            if unit is not None and first.module is not None:
-                line, _ = unit.source.place(mine.symbol.span[0])
-                names = f"{mine.symbol.name} and {more} more" if more else mine.symbol.name
-                yield f"declared twice: {path}:{line}: {names}, also in {first.module.path}"
+            if unit is not None and one.earlier.module is not None:
+                line, _ = unit.source.place(one.first.symbol.span[0])
+                where = one.earlier.module.path
+                yield f"declared twice: {path}:{line}: {one.names}, also in {where}"
 
 
 def _waiting(outcome: "RunOutcome", program: "CheckedProgram") -> Iterator[str]:

@@ -15,6 +15,7 @@ from grammar.semantics.link import Project
 from grammar.semantics.scopes import Found, Module
 from grammar.semantics.symbols import Duplicate, Kind, Table
 from grammar.syntax.references import Space
+from support.lazy_dataclass import dataclass
 
 #: Labels are the affair of `grammar.check.flow.control_flow`; a routine may be announced again and
 #: again.
@@ -29,13 +30,12 @@ def check(context: Context) -> Iterator[Diagnostic]:
         for inner, outer in routine.scope.shadowed():
             if outer.module is not None and inner.symbol.kind is not Kind.ROUTINE:
                 yield _hides(context, inner, outer)
-    for mine, first, more in repeated(context.project).get(context.module.path, ()):
-        names = f"{mine.symbol.name} and {more} more" if more else mine.symbol.name
-        verb = "are" if more else "is"
-        message = f"{names} {verb} declared for everybody in another module already"
-        reason = f"in {first.module.path}" if first.module else ""
+    for one in repeated(context.project).get(context.module.path, ()):
+        verb = "are" if one.more else "is"
+        message = f"{one.names} {verb} declared for everybody in another module already"
+        reason = f"in {one.earlier.module.path}" if one.earlier.module else ""
         yield context.finding(
-            "declared-twice", mine.symbol.span, message, reason=reason, severity="warning"
+            "declared-twice", one.first.symbol.span, message, reason=reason, severity="warning"
         )
 
 
@@ -60,12 +60,27 @@ def _hides(context: Context, inner: Found, outer: Found) -> Diagnostic:
     return context.finding("shadowed", symbol.span, message, reason=f"declared in {where}")
 
 
-@lru_cache(maxsize=1)
-def repeated(project: Project) -> Mapping[str, Sequence[tuple[Found, Found, int]]]:
-    """Return by path which declarations for all modules repeat those of an earlier module.
+@dataclass(frozen=True, slots=True)
+class Repeated:
+    """Declarations for all modules that repeat those of one earlier module.
 
-    For each such module these are the first one, the one that it repeats, and how many more follow.
+    The ``first`` of them repeats the ``earlier`` one, and so do ``more`` others.
     """
+
+    first: Found
+    earlier: Found
+    more: int
+
+    @property
+    def names(self) -> str:
+        """The declared names, as text."""
+        name = self.first.symbol.name
+        return f"{name} and {self.more} more" if self.more else name
+
+
+@lru_cache(maxsize=1)
+def repeated(project: Project) -> Mapping[str, Sequence[Repeated]]:
+    """Return by path which modules repeat declarations of earlier ones."""
     found: dict[str, dict[Module | None, list[tuple[Found, Found]]]] = {}
     for clash in project.clashes if project.is_controller else ():
         if clash.space is not Space.LABEL:
@@ -76,7 +91,7 @@ def repeated(project: Project) -> Mapping[str, Sequence[tuple[Found, Found, int]
                     of_module.setdefault(first.module, []).append((other, first))
     return {
         path: [
-            (*min(some, key=lambda pair: pair[0].symbol.span), len(some) - 1)
+            Repeated(*min(some, key=lambda pair: pair[0].symbol.span), len(some) - 1)
             for some in of_module.values()
         ]
         for path, of_module in found.items()

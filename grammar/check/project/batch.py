@@ -132,8 +132,9 @@ def _work_of(
     projects = deque[list[Found | Skipped]]()
     size = 0
     for root in _outermost(around or roots):
-        there = [one for one in _below(root) if isinstance(one, Found) or is_large(one)]
-        for _, _, members in projects_of(filter(is_left, there)):
+        every = asked if [root] == list(roots) else filter(is_left, _below(root))
+        there = [one for one in every if isinstance(one, Found) or is_large(one)]
+        for _, _, members in projects_of(there):
             found = [one for one in members if isinstance(one, Found)]
             own = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
             if own:
