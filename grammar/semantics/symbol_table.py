@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import chain
 
+from grammar.semantics.predefined import System
 from grammar.semantics.symbols import (
     Access,
     Duplicate,
@@ -24,6 +25,7 @@ from grammar.semantics.symbols import (
     TypeReference,
     TypeSymbol,
 )
+from grammar.semantics.types import Array
 from grammar.syntax import ast
 from grammar.syntax.references import Space, calls_in
 from grammar.syntax.walk import BODIES, bodies
@@ -36,7 +38,7 @@ def table_of(module: ast.Module) -> ModuleTable:
     """Return the symbol tables of one file."""
     content = module.content
     if isinstance(content, ast.DataList):
-        scope = _Scope(_access_in(content))
+        scope = _Scope(_access_in(content), is_system=_is_system(content))
         for item in content.items:
             if not isinstance(item, ast.Assignment):
                 scope.declare(item)
@@ -55,9 +57,13 @@ def table_of(module: ast.Module) -> ModuleTable:
 
 def _access_in(content: ast.DataList) -> Mapping[bool, Access]:
     """Return the visibility of a data list's declarations, with GLOBAL and without it."""
-    if content.name.text.startswith("$"):
+    if _is_system(content):
         return {True: Access.GLOBAL, False: Access.GLOBAL}
     return {True: Access.GLOBAL if content.is_public else Access.MODULE, False: Access.MODULE}
+
+
+def _is_system(content: ast.DataList) -> bool:
+    return content.name.text.startswith("$")
 
 
 def _routine_table(routine: ast.Routine, is_main: bool) -> RoutineTable:
@@ -150,10 +156,15 @@ def _parameters(
 
 
 class _Scope:
-    """Collects the symbols of one table; ``access`` is the visibility with GLOBAL and without."""
+    """Collects the symbols of one table; ``access`` is the visibility with GLOBAL and without.
 
-    def __init__(self, access: Mapping[bool, Access]) -> None:
+    Only the controller's own data lists (``is_system``) declare its system variables, and none
+    makes a signal of an array such as $OUT. Any other declaration of one changes nothing.
+    """
+
+    def __init__(self, access: Mapping[bool, Access], *, is_system: bool = False) -> None:
         self._access = access
+        self._is_system = is_system
         self._spaces: dict[Space, dict[str, Symbol]] = {space: {} for space in Space}
         self._duplicates: list[Duplicate] = []
 
@@ -161,7 +172,15 @@ class _Scope:
         return Table(self._spaces, tuple(self._duplicates))
 
     def add(self, space: Space, symbol: Symbol) -> None:
-        self._put(self._spaces[space], symbol)
+        if not (space is Space.VALUE and symbol.name[0] == "$" and self._is_fixed(symbol)):
+            self._put(self._spaces[space], symbol)
+
+    def _is_fixed(self, symbol: Symbol) -> bool:
+        """Return whether this is a system variable that cannot be declared here like that."""
+        known = System.load().variables.get(symbol.key)
+        if known is None or not self._is_system:
+            return known is not None
+        return symbol.kind is Kind.SIGNAL and isinstance(known.type, Array)
 
     def _put(self, names: dict[str, Symbol], symbol: Symbol) -> None:
         first = names.setdefault(symbol.key, symbol)

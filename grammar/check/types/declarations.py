@@ -102,12 +102,14 @@ def _check_definition(checker: TypeChecker, node: ast.Node, *, open_sizes: froze
     match node:
         case ast.VariableDeclaration():
             for declarator in node.declarators:
+                _check_owner(checker, declarator.name)
                 _check_sizes(checker, declarator, declarator.name.key in open_sizes)
         case ast.Structure():
             for group in node.groups:
                 for declarator in group.declarators:
                     _check_sizes(checker, declarator, is_open=False)
         case ast.Signal():
+            _check_owner(checker, node.name)
             check_signal(checker, node)
         case ast.ChannelDefinition():
             checker.infer(node.description)
@@ -118,6 +120,14 @@ def _check_definition(checker: TypeChecker, node: ast.Node, *, open_sizes: froze
 _DEFINITIONS: frozenset[type[Any]] = frozenset(
     {ast.VariableDeclaration, ast.Structure, ast.Signal, ast.ChannelDefinition, ast.Importation}
 )
+
+
+def _check_owner(checker: TypeChecker, name: ast.Name) -> None:
+    """Report the declaration of a system variable, which only the controller declares."""
+    found = checker.context.found(name)
+    if found is not None and found.module is None:
+        message = f"{name.text} is declared by the controller already"
+        checker.report("declared-twice", name, message, severity="warning")
 
 
 def _check_sizes(checker: TypeChecker, declarator: ast.Declarator, is_open: bool) -> None:

@@ -59,6 +59,15 @@ def test_channel() -> None:
     assert (Kind.CHANNEL, Access.GLOBAL) == (symbol.kind, symbol.access)
 
 
+def test_system_variables_keep_their_meaning() -> None:
+    """Only data lists of the controller declare system variables, and none makes $OUT a signal."""
+    lines = ["INT $NUM_AX", "SIGNAL $ALARM_STOP $OUT[9]", "SIGNAL $OUT $OUT[1]", "BOOL $OURS"]
+    delivered = in_list(*lines, head="DEFDAT $MACHINE PUBLIC").table
+    assert ["$NUM_AX", "$ALARM_STOP", "$OURS"] == list(delivered.spaces[Space.VALUE])
+    for one in (in_list(*lines).table, in_routine(*lines).routines[0].table):
+        assert ["$OURS"] == list(one.spaces[Space.VALUE])
+
+
 def test_tables_can_be_kept() -> None:
     """Tables come back from a pickle with the same names, types and modes."""
     text = "DEF A(X:IN)\nDECL INT X\nSIGNAL S $IN[1]\nB(X)\nEND\n"
