@@ -122,6 +122,9 @@ def _motion_violations(one: EndedMotion, way: Array | None) -> Iterator[Violatio
         is_free = motion.kind[0] != "S" and _largest_load(one) < _IDLE
     if limits is None:
         return
+    if min(limits) <= 0.0:
+        yield one.broken(law, "it has no speed or no acceleration", rule)
+        return
     wanted = seconds_of(1.0, *limits)
     cycle = np.diff(one.path.times[-2:]).item() / 1e6
     beside = _BESIDE * cycle * min((cycle / ramp_seconds(*limits)) ** 2, 1.0)

@@ -198,6 +198,12 @@ def test_a_path_keeps_speed_and_acceleration() -> None:
     assert [("", 9)] == broken(settings_of(9, velocity=0.055))
 
 
+@pytest.mark.parametrize("speed", [0.0, -0.05])
+def test_no_path_is_travelled_without_a_speed(speed: float) -> None:
+    """A speed of zero, or below, lets no motion end."""
+    assert ("", 8) in broken(settings_of(8, velocity=speed))
+
+
 @pytest.mark.parametrize(
     ("line", "factor"), [(6, 0.995), (6, 1.005), (7, 0.995), (7, 1.005), (9, 0.995), (11, 0.995)]
 )
