@@ -6,7 +6,7 @@ import ast
 import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import import_module
 from itertools import compress, count
@@ -125,16 +125,30 @@ def seen_digest(seen: Observation) -> str:
 
 
 def is_alike(one: Observation, other: Observation) -> bool:
-    """Return whether two runs are the same but for a millionth of a degree or mm in the path."""
-    if (one.events, one.ending, one.note) != (other.events, other.ending, other.note):
+    """Return whether two runs are the same but for a millionth of a degree, mm or second.
+
+    A, B and C are the same angles after a full turn.
+    """
+    if (one.ending, one.note, len(one.events)) != (other.ending, other.note, len(other.events)):
         return False
+    for event, same in zip(one.events, other.events, strict=True):
+        if event != replace(same, time=event.time) or abs((event.time or 0) - (same.time or 0)) > 1:
+            return False
     first, second = one.path, other.path
     if first is None or second is None:
         return first is second
     if first.placements != second.placements or first.motions != second.motions:
         return False
-    rows = ((first.times, second.times), (first.axes, second.axes), (first.points, second.points))
-    return all(a.shape == b.shape and np.allclose(a, b, rtol=0.0, atol=1e-6) for a, b in rows)
+    if first.axes.shape != second.axes.shape:
+        return False
+    turned = first.points[:, 3:] - second.points[:, 3:]
+    off = (
+        first.times - second.times,
+        first.axes - second.axes,
+        first.points[:, :3] - second.points[:, :3],
+        turned - 360.0 * np.round(turned / 360.0),
+    )
+    return all((np.abs(one) <= 1e-6).all() for one in off)
 
 
 # ------------------------------------------------------------------------------- marked lines

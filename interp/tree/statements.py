@@ -129,7 +129,7 @@ class Statements(Motions):
     def _block(self, body: tuple[ast.Statement, ...]) -> Steps[None]:
         outer = self._blocks
         self._blocks = (*outer, body)
-        place, last = max(self._place_on_way(body), 0), None
+        place, last = self._place_on_way(body) or 0, None
         try:
             while place < len(body):
                 try:
@@ -141,16 +141,21 @@ class Statements(Motions):
                         raise
                     last = self.run.again(place, last)
                 except Selected as selected:
-                    self._way = selected.way
-                    place = self._place_on_way(body)
-                    if place < 0:
-                        raise
+                    place = self._selected(selected, body)
         finally:
             self._blocks = outer
 
-    def _place_on_way(self, body: tuple[ast.Statement, ...]) -> int:
-        """Return the index of the statement that leads to the selected one, or -1."""
-        return next((place for place, one in enumerate(body) if one in self._way), -1)
+    def _place_on_way(self, body: tuple[ast.Statement, ...]) -> int | None:
+        """Return the index of the statement that leads to the selected one, if there is one."""
+        return next((place for place, one in enumerate(body) if one in self._way), None)
+
+    def _selected(self, selected: Selected, body: tuple[ast.Statement, ...]) -> int:
+        """Return the index of the statement that leads to a selected one, or raise ``selected``."""
+        self._way = selected.way
+        place = self._place_on_way(body)
+        if place is None:
+            raise selected
+        return place
 
     def _is_entered(self, node: ast.Statement) -> bool:
         """Return whether a block is only entered, on the way to the selected statement in it."""
@@ -195,7 +200,7 @@ class Statements(Motions):
     # ----------------------------------------------------------------------- control flow
 
     def _if(self, node: ast.If) -> Steps[None]:
-        is_entered = self._place_on_way(node.body) >= 0
+        is_entered = self._place_on_way(node.body) is not None
         if is_entered or (not self._way and (yield from self._is_true(node.condition))):
             yield from self._block(node.body)
         elif node.otherwise is not None:
@@ -203,7 +208,7 @@ class Statements(Motions):
 
     def _switch(self, node: ast.Switch) -> Steps[None]:
         for block in (*(branch.body for branch in node.branches), node.default or ()):
-            if self._place_on_way(block) >= 0:
+            if self._place_on_way(block) is not None:
                 yield from self._block(block)
                 return
         selector = yield from self.value(node.selector)

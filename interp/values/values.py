@@ -83,8 +83,7 @@ def integer(number: int) -> int:
 
 def rounded(number: float) -> int:
     """Return the nearest INT, halves away from zero; faults ``overflow`` [ARI-03, CON-02]."""
-    whole = math.floor(number + 0.5) if number >= 0 else -math.floor(0.5 - number)
-    return integer(whole)
+    return integer(int(number + math.copysign(0.5, number)))
 
 
 # -------------------------------------------------------------------------------- compound values

@@ -8,6 +8,7 @@ from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from conformance.evaluation.execution import Setup, observe
@@ -295,14 +296,23 @@ def test_red_by_laws_of_the_simulator_only(
 
 
 def test_runs_that_differ_by_rounding_are_alike() -> None:
-    """A billionth of a degree is rounding, a hundred-thousandth is not, nor is another event."""
+    """A billionth of a degree is rounding, a hundred-thousandth is not, nor is another event.
+
+    A full turn is no difference of A, nor is a microsecond of an event.
+    """
     seen = observe(_case("motion/acc_cp"), _SETUP)
     assert seen.path is not None
     alike = []
     for off in (1e-9, 1e-5):
         path = replace(seen.path, axes=seen.path.axes + off)
         alike.append(is_alike(seen, replace(seen, path=path)))
-    assert [True, False] == alike
+    for a in (360.0, 180.0):
+        path = replace(seen.path, points=seen.path.points + a * np.eye(6)[3])
+        alike.append(is_alike(seen, replace(seen, path=path)))
+    for late in (1, 2):
+        events = tuple(replace(event, time=(event.time or 0) + late) for event in seen.events)
+        alike.append(is_alike(seen, replace(seen, events=events)))
+    assert [True, False] * 3 == alike
     assert not is_alike(seen, replace(seen, events=seen.events[1:]))
     assert not is_alike(seen, replace(seen, path=None))
 

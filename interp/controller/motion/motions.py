@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal
 
-from grammar.motion_kinds import AXIS_MOTIONS, PLAIN_MOTIONS, SPLINE_MOTIONS
+from grammar.motion_kinds import AXIS_MOTIONS
 from interp.controller.motion.positions import FramesInForce, pose_of, word_of
 from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.state import ControllerState
@@ -35,12 +35,11 @@ from interp.robot.arm import (
     SplinePart,
     Target,
 )
+from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
 from interp.values.poses import IDENTITY
 from interp.values.values import ArrayValue, StructureValue
 
-_AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
 _LOADS: Final = ("$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3")
-_KINDS: Final = {kind.removesuffix("_REL") for kind in (*PLAIN_MOTIONS, *SPLINE_MOTIONS)}
 #: The motion that brings the arm to the end of a line with which a program begins.
 _BROUGHT: Final = {"LIN": "PTP", "SLIN": "SPTP"}
 #: The motion that replaces one that cannot be planned.
@@ -71,7 +70,7 @@ def target_of(value: Value) -> Target:
 
 def is_complete(target: Target) -> bool:
     """Return whether a target has all six axes, or a pose with Status and Turn [MOT-10]."""
-    return set(_AXES) <= set(target) or set("XYZABCST") <= set(target)
+    return set(AXIS_NAMES) <= set(target) or set("XYZABCST") <= set(target)
 
 
 def _numbers(value: Any, default: float) -> tuple[float, ...]:
@@ -137,7 +136,7 @@ class MotionBuilder:
         With ``is_replaced``, build a PTP to the same point with any Status instead.
         """
         kind, _, suffix = request.kind.partition("_")
-        if kind not in _KINDS or kind == "SPL":
+        if kind == "SPL":  # it belongs into a block
             raise own_fault("motion_kind")
         target = target_of(request.target)
         criteria = request.criteria
@@ -226,8 +225,7 @@ class MotionBuilder:
     def back_to(self, at: At, axes: Sequence[float]) -> PlannedMotion:
         """Build the motion back to where an interrupt routine has stopped the arm."""
         snapshot = self._variables.snapshot()
-        names = [*_AXES, *(f"E{place}" for place in range(1, 7))]
-        target = dict(zip(names, axes, strict=False))
+        target = dict(zip((*AXIS_NAMES, *EXTERNAL_NAMES), axes, strict=False))
         return PlannedMotion(
             Motion(self._next(), at, "PTP", self._settings(snapshot), target), snapshot
         )

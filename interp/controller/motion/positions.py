@@ -8,8 +8,9 @@ is within $H_POS_TOL of $H_POS; $IN_HOME1 to 5 likewise with $AXIS_HOME and $H_A
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial
+from itertools import chain, repeat
 from typing import TYPE_CHECKING, Any, Final
 
 from interp.controller.state.predefined_values import empty_structure
@@ -20,7 +21,12 @@ from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Position
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.carrier import Carrier
-from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
+from interp.robot.kinematics.machine_data import (
+    AXIS_NAMES,
+    EXTERNAL_NAMES,
+    ROBOT_AXES,
+    MachineData,
+)
 from interp.robot.kinematics.placement import IpoMode, Placement
 from interp.values.faults import fault
 from interp.values.poses import IDENTITY, Pose
@@ -37,8 +43,7 @@ _HOME: Final = 1e-3
 def axes_value(axes: Sequence[float]) -> StructureValue:
     """Return an E6AXIS from axis values in degrees or mm; missing external axes are 0."""
     value = empty_structure("E6AXIS")
-    for place in range(len(value.members)):
-        value.members[place] = single(axes[place] if place < len(axes) else 0.0)
+    _set(value, (*AXIS_NAMES, *EXTERNAL_NAMES), axes)
     return value
 
 
@@ -47,13 +52,17 @@ def pose_value(
 ) -> StructureValue:
     """Return an E6POS from a pose, Status, Turn and external axes; missing axes are 0."""
     value = empty_structure("E6POS")
-    for name, number in zip("XYZABC", pose.components, strict=True):
-        value.set(name, single(number))
+    _set(value, "XYZABC", pose.components)
     value.set("S", status)
     value.set("T", turn)
-    for place in range(6):
-        value.set(f"E{place + 1}", single(externals[place] if place < len(externals) else 0.0))
+    _set(value, EXTERNAL_NAMES, externals)
     return value
+
+
+def _set(value: StructureValue, names: Iterable[str], numbers: Iterable[float]) -> None:
+    """Set components of a position; those for which there is no number are 0."""
+    for name, number in zip(names, chain(numbers, repeat(0.0)), strict=False):
+        value.set(name, single(number))
 
 
 def pose_of(frame: Any) -> Pose | None:

@@ -29,6 +29,7 @@ from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import Invoke, Path
 from interp.robot.arm import Target
 from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
 from interp.robot.kinematics.placement import Placement
 from interp.values.faults import Fault, fault
 from interp.values.poses import IDENTITY, Pose
@@ -47,7 +48,6 @@ from interp.values.values import (
 if TYPE_CHECKING:
     from interp.robot.kinematics.solver import Kinematics
 
-_AXES: Final = ("A1", "A2", "A3", "A4", "A5", "A6")
 #: Arrays whose size is in the profile.
 _SIZES: Final = {
     "CYCFLAG": "cyclic_flags",
@@ -248,11 +248,11 @@ class PredefinedRoutines:
         from interp.robot.kinematics.targets import turn_of
 
         target = target_of(known(request.arguments[0]))
-        axes = _components(target, _AXES)
+        axes = _components(target, AXIS_NAMES)
         kinematics, placement = self._kinematics()
         flange = Pose.from_matrix(kinematics.forward(axes).tolist())
         status = int(kinematics.status(axes))
-        externals = [target.get(f"E{place}", 0.0) for place in range(1, 7)]
+        externals = [target.get(name, 0.0) for name in EXTERNAL_NAMES]
         pose = pose_value(placement.at(externals).point(flange), status, turn_of(axes), externals)
         return pose, {1: 0}
 
@@ -264,8 +264,8 @@ class PredefinedRoutines:
         start = target_of(known(request.arguments[1]))
         kinematics, placement = self._kinematics()
         point = Pose.of(*_components(target, "XYZABC"))
-        externals = [target.get(f"E{place}", 0.0) for place in range(1, 7)]
-        origin = _components(start, _AXES)
+        externals = [target.get(name, 0.0) for name in EXTERNAL_NAMES]
+        origin = _components(start, AXIS_NAMES)
         status, turn = target.get("S"), target.get("T")
         try:
             found = solve(

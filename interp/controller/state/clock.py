@@ -43,7 +43,7 @@ class Clock:
 
     def tick_after(self, duration: float) -> int:
         """Return the time of the first tick at least ``duration`` µs from now [TIM-06]."""
-        return math.ceil((self.now + max(duration, 0)) / self.cycle) * self.cycle
+        return math.ceil((self.now + duration) / self.cycle) * self.cycle
 
 
 @dataclass(slots=True, eq=False)

@@ -30,6 +30,9 @@ KINDS: Final = tuple(
     """.split()
 )
 
+#: One encoder for all events: a long trace has millions.
+_json: Final = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
+
 
 @dataclass(frozen=True, slots=True)
 class TraceEvent:
@@ -53,7 +56,7 @@ class TraceEvent:
     def line(self) -> str:
         """Return the event as a line of JSON, without the line end."""
         head = {"t": self.time, "task": self.task, "kind": self.kind, "at": self.place}
-        return json.dumps({**head, **self.fields}, ensure_ascii=False, separators=(",", ":"))
+        return _json({**head, **self.fields})
 
 
 def path_text(path: Path) -> str:

@@ -25,6 +25,9 @@ from interp.values.poses import IDENTITY, Pose
 from support.lazy_dataclass import dataclass
 
 ROBOT_AXES = 6
+#: The names of the axes in positions.
+AXIS_NAMES = ("A1", "A2", "A3", "A4", "A5", "A6")
+EXTERNAL_NAMES = ("E1", "E2", "E3", "E4", "E5", "E6")
 RUN_UP_TIME = 0.4
 """Seconds to full speed if the data has no run-up time; assumed, similar to that of other arms."""
 FILTER_TIME = 0.1  # seconds over which acceleration builds up; assumed too

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from interp.robot.arm import Motion, Target
-from interp.robot.kinematics.machine_data import ROBOT_AXES
+from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES, ROBOT_AXES
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solver import Array, Kinematics
 from interp.robot.kinematics.targets import TargetStatus, check_limits, ptp_target
@@ -21,8 +21,6 @@ from interp.values.faults import Fault
 from interp.values.poses import Pose
 
 _COMPONENTS = ("X", "Y", "Z", "A", "B", "C")
-_AXES = tuple(f"A{i}" for i in range(1, ROBOT_AXES + 1))
-_EXTERNALS = tuple(f"E{i}" for i in range(1, 7))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,7 +72,7 @@ class Programmed:
     def externals(self, target: Target, is_relative: bool) -> Array:
         """Return the external axes of a target; raise `Fault` 1447 beyond their limits."""
         values = self.axes[ROBOT_AXES:].copy()
-        for place, name in enumerate(_EXTERNALS[: len(values)]):
+        for place, name in enumerate(EXTERNAL_NAMES[: len(values)]):
             if name in target:
                 values[place] = target[name] + (values[place] if is_relative else 0.0)
         check_limits(self.arm.machine.externals, values.tolist())
@@ -128,7 +126,7 @@ class Programmed:
 
     def _axes(self, target: Target, is_relative: bool) -> Array:
         axes = self.axes.copy()
-        for place, name in enumerate(_AXES):
+        for place, name in enumerate(AXIS_NAMES):
             if name in target:
                 axes[place] = target[name] + (axes[place] if is_relative else 0.0)
         axes[:ROBOT_AXES] = self.arm.coupled(axes[:ROBOT_AXES])
@@ -139,7 +137,7 @@ class Programmed:
 
 def has_axes(target: Target) -> bool:
     """Return whether a target has axes and not a point."""
-    return any(name in target for name in _AXES)
+    return any(name in target for name in AXIS_NAMES)
 
 
 def check_finite(target: Target) -> None:
