@@ -28,6 +28,7 @@ from conformance.evaluation.path_geometry import (
     from_circle,
     nearest,
     refined,
+    rotations,
 )
 from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.chain import Chain
@@ -67,8 +68,8 @@ def _wrong_tool_pose(path: PathRecord, machine: MachineData) -> Iterator[Violati
             tools = flanges[rows] @ matrix_of(placement.tool)
             poses = np.linalg.inv(placement.chains_before(own)) @ tools
             off = np.abs(poses[:, :3, 3] - path.points[rows, :3]).max(axis=1)
-            sampled = np.array([matrix_of(Pose.of(*row)) for row in path.points[rows]])
-            off = np.maximum(off, np.degrees(np.abs(sampled - poses)[:, :3, :3].max(axis=(1, 2))))
+            turned = np.abs(rotations(path.points[rows, 3:]) - poses[:, :3, :3]).max(axis=(1, 2))
+            off = np.maximum(off, np.degrees(turned))
             if not off.max() <= ROUNDING:
                 place = first + int(np.argmax(~(off <= ROUNDING)))
                 law = "the tool is where axes and machine data put it"

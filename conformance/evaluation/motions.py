@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Final
 
 import numpy as np
@@ -162,14 +162,24 @@ def _cycle(times: npt.NDArray[np.int64]) -> int:
 def flanges_of(chain: Chain, axes: Array) -> Array:
     """Return flange poses (n, 4, 4) relative to the foot, joint by joint, for axes (n, 6)."""
     pose = np.eye(4)
-    for joint, values in zip(chain.joints, axes.T, strict=False):
-        move = np.tile(np.eye(4), (len(values), 1, 1))
-        axis = np.array(joint.axis)
-        if joint.is_linear:
+    for (frame, axis, is_linear, skew, square), values in zip(_joints(chain), axes.T, strict=False):
+        move = np.zeros((len(values), 4, 4))
+        move[:] = np.eye(4)
+        if is_linear:
             move[:, :3, 3] = values[:, None] * axis
         else:
-            angle, skew = np.radians(values)[:, None, None], np.cross(np.eye(3), axis)
-            move[:, :3, :3] += np.sin(angle) * skew + (1.0 - np.cos(angle)) * (skew @ skew)
-        pose = pose @ matrix_of(joint.frame) @ move
+            angle = np.radians(values)[:, None, None]
+            move[:, :3, :3] += np.sin(angle) * skew + (1.0 - np.cos(angle)) * square
+        pose = pose @ frame @ move
     flanges: Array = pose @ matrix_of(chain.end)
     return flanges
+
+
+@lru_cache(maxsize=16)
+def _joints(chain: Chain) -> list[tuple[Array, Array, bool, Array, Array]]:
+    """Return of each joint its frame, axis and kind, and the terms of a rotation about the axis."""
+    skews = [np.cross(np.eye(3), np.array(joint.axis)) for joint in chain.joints]
+    return [
+        (matrix_of(joint.frame), np.array(joint.axis), joint.is_linear, skew, skew @ skew)
+        for joint, skew in zip(chain.joints, skews, strict=True)
+    ]

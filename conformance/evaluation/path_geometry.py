@@ -85,6 +85,17 @@ def from_circle(points: Array, first: Array, second: Array, third: Array) -> Arr
     return np.asarray(np.hypot(flat - radius, height))
 
 
+def rotations(angles: Array) -> Array:
+    """Return the rotations (n, 3, 3) of A, B and C in degrees (n, 3), as `Pose.of` [ARI-09]."""
+    (sa, sb, sc), (ca, cb, cc) = np.sin(radians := np.radians(angles.T)), np.cos(radians)
+    rows = (
+        (ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc),
+        (sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc),
+        (-sb, cb * sc, cb * cc),
+    )
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
 def arc_length(points: Array) -> float:
     """Return the length of the arc along points (n, 3), by the circle that fits them best.
 

@@ -63,6 +63,8 @@ class _ProgrammedPath:
 
 def blend_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """Yield blends that use more of a motion than their criteria say, or less of both [BLD-07]."""
+    if all(one.stops for one in motions):
+        return
     law = "a blend takes of both motions what its criteria say"
     for (one, way), (other, further) in pairwise(_programmed_paths(motions)):
         if one.stops or other.begins or not one.motion.criteria or not follows(one, other):

@@ -12,6 +12,7 @@ the ``_C`` variables take the values of its snapshot.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache, lru_cache
 from math import prod
 from typing import Any, Final, Protocol
 
@@ -241,8 +242,9 @@ class Variables:
 
     def _root(self, name: str) -> Any:
         if name not in self._values:
-            type_ = self.type_of(name)
-            self._values[name] = _zero(type_)
+            # a variable with a twin is copied before it is written
+            new = _shared_zero if name in self._with_twins else _zero
+            self._values[name] = new(self.type_of(name))
         return self._values[name]
 
     def _initial(self, name: str, data: Any) -> Any:
@@ -260,14 +262,16 @@ class Variables:
             self._values[name] = copied(value)
             return
         try:
+            self._values[name] = copied(self._root(name))
             self._store((name,), value)
         except Fault:  # the data list declares another type, which is then the right one
             self._values[name] = copied(value)
 
 
-def _with_twins() -> list[str]:
+@cache
+def _with_twins() -> tuple[str, ...]:
     variables = System.load().variables
-    return [name for name in variables if variables[name].twin is not None]
+    return tuple(name for name in variables if variables[name].twin is not None)
 
 
 def _texts(value: Value | None) -> Any:
@@ -374,3 +378,6 @@ def _zero(type_: Type) -> Any:
         case Structure():
             return StructureValue(type_, [_zero(one.type) for one in type_.members])
     return 0 if type_ == UNKNOWN else zero(type_)
+
+
+_shared_zero = lru_cache(maxsize=256)(_zero)
