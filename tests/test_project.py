@@ -10,6 +10,7 @@ import tomllib
 from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 import pytest
@@ -189,6 +190,8 @@ def test_documents_name_what_there_is(document: Path) -> None:
         path.as_posix() for top in (*PACKAGES, "tests") for path in (ROOT / top).rglob("*.py")
     ]
     assert set() == {one for one in named if not any(path.endswith(f"/{one}") for path in modules)}
+    for name in re.findall(rf"`((?:{'|'.join(PACKAGES)})(?:\.\w+){{2,}})`", text):
+        resolve_name(name)
     links = set(re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text))
     assert set() == {link for link in links if not (document.parent / link).exists()}
 
