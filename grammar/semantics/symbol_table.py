@@ -25,7 +25,7 @@ from grammar.semantics.symbols import (
     TypeReference,
     TypeSymbol,
 )
-from grammar.semantics.types import Array
+from grammar.semantics.types import UNKNOWN, Array
 from grammar.syntax import ast
 from grammar.syntax.references import Space, calls_in
 from grammar.syntax.walk import BODIES, bodies
@@ -178,9 +178,9 @@ class _Scope:
     def _is_fixed(self, symbol: Symbol) -> bool:
         """Return whether this is a system variable that cannot be declared here like that."""
         known = System.load().variables.get(symbol.key)
-        if known is None or not self._is_system:
-            return known is not None
-        return symbol.kind is Kind.SIGNAL and isinstance(known.type, Array)
+        if known is None or known.type == UNKNOWN:  # a stand-in may tell the type
+            return False
+        return not self._is_system or (symbol.kind is Kind.SIGNAL and isinstance(known.type, Array))
 
     def _put(self, names: dict[str, Symbol], symbol: Symbol) -> None:
         first = names.setdefault(symbol.key, symbol)
