@@ -16,12 +16,14 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from functools import partial
+from itertools import permutations
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
 from recovery.clustering.edit_merging import (
     are_one_change,
+    choices,
     combined_edits,
     merged_as_choice,
     merged_as_form,
@@ -144,6 +146,7 @@ def merged_by_reason(
 ) -> list[Cause]:
     """Return the causes; those most of whose lines fail for the same reason are merged.
 
+    After that, those are for which the same rule gets alternatives that nothing calls.
     The proposals of a merged cause are sorted by what they repair of all its lines.
     """
     alike: dict[Reason | int, list[Cause]] = defaultdict(list)
@@ -152,7 +155,18 @@ def merged_by_reason(
         for n in cause.lines if reasons else ():
             count[reasons[n]] += search.weights[n]
         alike[max(count, key=lambda r: (count[r], r), default=place)].append(cause)
-    return [_united(search, several) for several in alike.values()]
+    united = [_united(search, several) for several in alike.values()]
+    missing: dict[str | int, list[Cause]] = defaultdict(list)
+    for place, cause in enumerate(united):
+        missing[_gathers_again(search, cause) or place].append(cause)
+    return [_united(search, several) for several in missing.values()]
+
+
+def _gathers_again(search: CauseSearch, cause: Cause) -> str:
+    """Return the rule that gets rules which nothing calls: what had gathered them is missing."""
+    unused_in = search.finder.profile.unused_in
+    edits = (edit for best in cause.proposals[:1] for edit in _alternatives(best))
+    return next((edit.rule for edit in edits if unused_in(edit.text)), "")
 
 
 def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
@@ -179,7 +193,8 @@ def _gathered(
 
     Where a rule with several alternatives is missing, each of these is another proposal. They are
     missing at one place, so first come the proposals for one rule: the rule in which they repair
-    most together. No words are reserved but those of the best proposal.
+    most together. For lines that these do not repair an alternative of that rule is sought. No
+    words are reserved but those of the best proposal, and no more negatives are accepted.
     """
     best = max(proposals, key=partial(_worth, search, lines), default=None)
     of_rule: dict[str, list[Proposal]] = defaultdict(list)
@@ -187,31 +202,75 @@ def _gathered(
         edit = proposal.edits[-1]
         if isinstance(edit, AddAlternative) and best and _words(proposal) <= _words(best):
             of_rule[edit.rule].append(proposal)
-    covers = [_cover(search, some, lines) for some in of_rule.values()]
-    chosen = max(covers, key=lambda cover: sum(worth for _, worth in cover), default=[])
-    left = lines.difference(*(proposal.mended for proposal, _ in chosen))
-    chosen += _cover(search, [p for some in of_rule.values() for p in some], left)
-    whole = first = chosen[0][0] if chosen else None
-    for further, _ in chosen[1:MOST_GATHERED]:
-        assert whole is not None
-        edits = combined_edits(further.edits, whole.edits)  # the first one remains the last edit
-        both = search.proposal(edits, max(whole.breadth, further.breadth) + 1)
-        if both.mended & lines > whole.mended & lines:
+    covers = {rule: _cover(search, some, lines) for rule, some in of_rule.items()}
+    if not covers:
+        return []
+    rule = max(covers, key=lambda rule: sum(_worth(search, lines, p) for p in covers[rule]))
+    chosen = covers[rule]
+    left = lines.difference(*(proposal.mended for proposal in chosen))
+    further = [p for p in _sought_in(search, rule, left) if _words(p) <= _words(chosen[0])]
+    left = left.difference(*(proposal.mended for proposal in further))
+    others = _cover(search, [p for some in of_rule.values() for p in some], left)
+    whole = chosen[0]
+    for proposal in (*chosen[1:], *further, *others)[:MOST_GATHERED]:
+        edits = combined_edits(proposal.edits, whole.edits)  # the first one remains the last edit
+        both = search.proposal(edits, max(whole.breadth, proposal.breadth) + 1)
+        is_more = both.mended & lines > whole.mended & lines
+        if is_more and both.accepts_negatives <= whole.accepts_negatives:
             whole = both
-    return [] if whole is None or whole is first else [whole]
+    return [] if whole is chosen[0] else [_completed(search, whole)]
+
+
+def _sought_in(search: CauseSearch, rule: str, lines: frozenset[int]) -> Iterator[Proposal]:
+    """Yield the best alternatives of a rule for lines, those with the same first word together."""
+    led: dict[str, list[int]] = defaultdict(list)
+    for n in sorted(lines):
+        led[search.lead(search.lines[n])].append(n)
+    for _, group in sorted(led.items()):
+        found = search.best_from_scratch(group, rule)
+        if found is not None:
+            yield search.proposal(found.proposals[0].edits, found.proposals[0].breadth)
+
+
+def _completed(search: CauseSearch, proposal: Proposal) -> Proposal:
+    """Return the proposal; two rules that get much the same alternatives get the same.
+
+    What is missing in both is one rule, of which one place need not show all.
+    """
+    ends = {e.rule: search.finder.closing(e.rule) for e in _alternatives(proposal)}
+    texts = {rule: dict.fromkeys(_texts(proposal, rule, ends[rule])) for rule in ends}
+    for rule, other in permutations(ends, 2):
+        common = texts[rule].keys() & texts[other].keys()
+        if len(common) > 1 and 2 * len(common) >= min(len(texts[rule]), len(texts[other])):
+            more = (" ".join((t, *ends[rule])) for t in texts[other] if t not in common)
+            edits = combined_edits([AddAlternative(rule, text) for text in more], proposal.edits)
+            wider = search.proposal(edits, proposal.breadth + 1)
+            is_safe = wider.accepts_negatives <= proposal.accepts_negatives
+            if is_safe and wider.mended >= proposal.mended:
+                proposal = wider
+    return proposal
+
+
+def _alternatives(proposal: Proposal) -> list[AddAlternative]:
+    return [edit for edit in proposal.edits if isinstance(edit, AddAlternative)]
+
+
+def _texts(proposal: Proposal, rule: str, end: Sequence[str]) -> list[str]:
+    """Return the alternatives that a rule gets, without line end; each of a choice by itself."""
+    texts = [edit.text for edit in _alternatives(proposal) if edit.rule == rule]
+    return [text for whole in texts for text in choices(whole.removesuffix(" ".join(("", *end))))]
 
 
 def _cover(
     search: CauseSearch, proposals: Sequence[Proposal], lines: frozenset[int]
-) -> list[tuple[Proposal, float]]:
-    """Return the proposals that repair most of the lines, with their worth (greedy set cover)."""
-    cover: list[tuple[Proposal, float]] = []
+) -> list[Proposal]:
+    """Return the proposals that repair most of the lines (greedy set cover)."""
+    cover: list[Proposal] = []
     while proposals:
-        worth = partial(_worth, search, lines)
-        further = max(proposals, key=worth)
+        further = max(proposals, key=partial(_worth, search, lines))
         if not further.mended & lines:
             break
-        cover.append((further, worth(further)))
+        cover.append(further)
         lines -= further.mended
     return cover
 

@@ -106,7 +106,7 @@ def merged_as_choice(
     ]
 
 
-def _choices(word: str) -> list[str]:
+def choices(word: str) -> list[str]:
     """Return the words of a choice in parentheses, or the single word."""
     return word[1:-1].split(" | ") if word[0] == "(" and word[-1] == ")" else [word]
 
@@ -114,7 +114,7 @@ def _choices(word: str) -> list[str]:
 def _chosen(left: object, right: object, members: dict[str, Candidate]) -> Candidate:
     assert isinstance(left, tuple)
     assert isinstance(right, tuple)
-    choice = f"({' | '.join(sorted({w for m in members for w in _choices(m)}))})"
+    choice = f"({' | '.join(sorted({w for m in members for w in choices(m)}))})"
     body = " ".join((*left, choice, *right))
     last = next(iter(members.values())).edits[-1]
     edit: Edit

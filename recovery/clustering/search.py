@@ -10,7 +10,7 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Sequence
 from typing import TypeVar
 
-from grammar.notation.edits import AddToken, Edit
+from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
 from recovery.clustering.edit_merging import merged_as_choice
@@ -78,11 +78,14 @@ class CauseSearch:
             self.same_token[self._token(number)].append(number)
             self.same_lead[lines[number].words()[0]].append(number)
 
-    def best_for(self, group: Sequence[int]) -> Cause | None:
-        """Return the cause of the heaviest lines of a group, or ``None`` if no edit helps."""
+    def best_for(self, group: Sequence[int], rule: str = "") -> Cause | None:
+        """Return the cause of the heaviest lines of a group, or ``None`` if no edit helps.
+
+        Where a ``rule`` is given, it is sought among the alternatives that this rule may get.
+        """
         members = self._sought = frozenset(group)
         self._has_words = all(self.lines[n].keywords for n in group)
-        proposals = self._proposals(group)
+        proposals = self._proposals(group, rule)
         for place, best in enumerate(proposals):
             # a line that only advances has its first cause here, and another one later
             taken = (best.mended & self.open) | (best.advanced & members)
@@ -90,11 +93,11 @@ class CauseSearch:
                 return Cause(tuple(sorted(taken)), tuple(proposals[place:]))
         return None
 
-    def best_from_scratch(self, lines: Sequence[int]) -> Cause | None:
+    def best_from_scratch(self, lines: Sequence[int], rule: str = "") -> Cause | None:
         """Return the cause of the heaviest of these lines, as if there were no others."""
         self.is_thorough = True
         self.open = set(lines)
-        return self.best_for(lines)
+        return self.best_for(lines, rule)
 
     def proposal(self, edits: tuple[Edit, ...], breadth: int) -> Proposal:
         """Return the edits with their result on all lines, whatever the causes of these."""
@@ -112,7 +115,7 @@ class CauseSearch:
         more = self.file_trial.entailed(wider, mended, behind)
         return Cause(tuple(sorted({*cause.lines, *more})), cause.proposals)
 
-    def _proposals(self, group: Sequence[int]) -> list[Proposal]:
+    def _proposals(self, group: Sequence[int], rule: str) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))
         specimens = _spread(heavy, SPECIMENS if self.is_thorough else 1)
         most = MOST_TRIED if self.is_thorough else MOST_TRIED_LIGHT
@@ -123,6 +126,7 @@ class CauseSearch:
             (*near, *_spread(alike, VARIED_LINES), *_spread(led_alike, VARIED_LINES))
         )
         tried = self.finder.find_common([self.lines[n] for n in varied], most, len(near))
+        tried = [c for c in tried if not rule or c.place[:2] == (AddAlternative.__name__, rule)]
         sample = set(specimens) | set(_spread(heavy, SAMPLE_LINES))
         sample |= set(_spread(alike, SAMPLE_LINES)) | varied.keys()
         first = self._tried(tried, most, sample)
@@ -131,7 +135,8 @@ class CauseSearch:
             for candidate in merged_as_choice([c for c, o in first if o.mended])
         ]
         proposals = []
-        for candidate, negatives in (*self._blocks(specimens[0], heavy), *self._kept(first)):
+        blocks = [] if rule else self._blocks(specimens[0], heavy)
+        for candidate, negatives in (*blocks, *self._kept(first)):
             result = self.trial.result(candidate.edits, self.open)
             edits, breadth = candidate.edits, candidate.breadth
             proposals.append(Proposal(edits, result.mended, result.advanced, breadth, negatives))
@@ -191,14 +196,13 @@ class CauseSearch:
         if not opener:
             return []
         texts = self.file_trial.texts(heavy)
-        found = [
-            (self.file_trial.readable_share(wider, heavy), candidate)
-            for candidate in self.finder.find_blocks(line, opener, texts, self._meant)
-            if (wider := self.trial.wider(candidate.edits)) is not None
-        ]
-        found.sort(
-            key=lambda pair: (-pair[0] * BREADTH_FACTOR ** pair[1].breadth, str(pair[1].edits))
-        )
+        found = []
+        for candidate in self.finder.find_blocks(line, opener, texts, self._meant):
+            wider = self.trial.wider(candidate.edits)
+            if wider is not None:
+                worth = self._worth(candidate, self.trial.result(candidate.edits, heavy))
+                found.append((worth * self.file_trial.readable_share(wider, heavy), candidate))
+        found.sort(key=lambda pair: (-pair[0], str(pair[1].edits)))
         return [
             (candidate, self.count_negatives(candidate.edits))
             for _, candidate in found[:KEPT_PER_RULE]

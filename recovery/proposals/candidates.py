@@ -136,13 +136,14 @@ class CandidateFinder:
         rank = self.profile.width(rule) + self.phraser.breadth(block.symbols) + len(block.symbols)
         if rule not in self.profile.of_lines:
             rank += NO_LINE_RULE_COST
-        symbols = (*block.symbols, *self._closing(rule))
+        symbols = (*block.symbols, *self.closing(rule))
         return rank + self.similarity.dissimilarity(rule, symbols), (
             *self.profile.vocabulary.reserve(k for k in block.keywords if k not in known),
             AddAlternative(rule, " ".join(symbols)),
         )
 
-    def _closing(self, rule: str) -> tuple[str, ...]:
+    def closing(self, rule: str) -> tuple[str, ...]:
+        """Return the line end with which every alternative of a rule ends, or nothing."""
         closing = self.profile.closing(rule)
         return (closing,) if closing else ()
 

@@ -176,9 +176,13 @@ class Phraser:
             for level in (0, -1):
                 yield self._as_usual(parts, [levels[level] for levels in choices])
             yield from islice(product(*choices), MOST_COMBINATIONS)
-        if len(parts) == 1 and not any(keyword for _, keyword in words):
-            # an operand that is all of a phrase may be whatever reads it, the most used ones first
+        if not any(keyword for _, keyword in words):
             rules = self.matcher.rules_for(tuple(kind for kind, _ in words))
+            # an unused rule was probably written for this purpose
+            yield from ((rule,) for rule in sorted(rules) if not self._uses[rule])
+            if len(parts) > 1:
+                return
+            # an operand that is all of a phrase may be whatever reads it, the most used ones first
             ordered = sorted(rules, key=lambda r: (-self._uses[r], r))
             yield from ((rule,) for rule in ordered[:MOST_OPERAND_RULES])
 

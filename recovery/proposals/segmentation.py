@@ -41,7 +41,11 @@ class Segmenter:
     def _cut(self, words: tuple[Token, ...]) -> list[tuple[Token, ...]] | None:
         count = len(words)
         best: list[tuple[int, list[tuple[Token, ...]]] | None] = [None] * count + [(0, [])]
+        lexer = self.matcher.recognizer.lexer
         for start in range(count - 1, -1, -1):
+            # a word right behind a value is not the name with which an operand begins
+            is_word = lexer.is_keyword(words[start][0])
+            squeezed = start > 0 and is_word and lexer.has_value(words[start - 1][0])
             for end in range(start + 1, count + 1):
                 rest, part = best[end], words[start:end]
                 if not self._may_go_on(part):
@@ -49,7 +53,9 @@ class Segmenter:
                 if rest is None or not self._can_be_written(part):
                     continue
                 cost = rest[0] + (
-                    TOKEN_COST if len(part) == 1 else OPERAND_COST + SEAM_COST * self._seams(part)
+                    TOKEN_COST
+                    if len(part) == 1
+                    else OPERAND_COST + SEAM_COST * (self._seams(part) + squeezed)
                 )
                 known = best[start]
                 if known is None or cost < known[0]:

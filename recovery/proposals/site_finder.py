@@ -333,6 +333,8 @@ class EditSiteFinder:
         word = len(words) == 1 and (words[0][1] or lexer.is_keyword(words[0][0]))
         if len(place) > 2 and len(elements) == 1:
             return  # the same as with the group it is in
+        if called and profile.callers[called] == {rule}:
+            return  # the same as an alternative of that rule, which is called only here
         if whole or ((leading or closing) and not word):
             return  # the same as an alternative; the words that begin and close a line or a block
         if called and place[-1] == 1 and len(place) == 2 and profile.is_hub(rule):

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from grammar.notation.edits import AddAlternative, Edit, Widen
 from grammar.notation.g4 import read
+from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
 from recovery.clustering.causes import merged_by_edits, merged_by_first_word, merged_by_reason
@@ -23,16 +24,41 @@ NAME : [A-Z]+ ;
 NEWLINE : '\\n' ;
 SPACE : ' '+ -> skip ;
 """)
+# Two rules that a missing rule called, which had gathered those that nothing calls.
+APART = read("""grammar S;
+program : head* BODY NEWLINE line* EOF ;
+head : IF NAME NEWLINE | LIN NAME NEWLINE ;
+line : IF NAME NEWLINE | LIN NAME NEWLINE ;
+halt : HALT NAME ;
+wait : WAIT NAME ;
+exit : EXIT NAME ;
+BODY : 'BODY' ;
+IF : 'IF' ;
+LIN : 'LIN' ;
+HALT : 'HALT' ;
+WAIT : 'WAIT' ;
+EXIT : 'EXIT' ;
+NAME : [A-Z]+ ;
+NEWLINE : '\\n' ;
+SPACE : ' '+ -> skip ;
+""")
 LESS = Widen("line", (1, 3), "'<'")
 MORE = Widen("line", (1, 3), "'>'")
+
+
+def search_in(
+    grammar: Grammar, texts: Sequence[str], count_negatives: NegativeCounter = no_negatives
+) -> CauseSearch:
+    """A search for the first failing line of each text."""
+    found = survey_texts([(str(n), text) for n, text in enumerate(texts)], grammar)
+    lines = [LinePattern(found.forms[file.failures[0].form], ()) for file in found.files]
+    return CauseSearch(Recognizer(grammar), lines, [1] * len(lines), count_negatives)
 
 
 def search(count_negatives: NegativeCounter = no_negatives) -> CauseSearch:
     """A search for four lines: two with a sign that is missing, two with another."""
     texts = [f"IF {name} {sign} B\n" for sign in "<>" for name in "AC"]
-    found = survey_texts(list(zip("1234", texts, strict=True)), GRAMMAR)
-    lines = [LinePattern(found.forms[file.failures[0].form], ()) for file in found.files]
-    return CauseSearch(Recognizer(GRAMMAR), lines, [1] * 4, count_negatives)
+    return search_in(GRAMMAR, texts, count_negatives)
 
 
 def apart(searched: CauseSearch) -> list[Cause]:
@@ -104,3 +130,47 @@ def test_the_alternatives_of_a_missing_rule_are_one_proposal() -> None:
     assert set(alternatives) == set(one.proposals[0].edits)
     assert mends_all(one.proposals[0])
     assert {less, more} == {*one.proposals[1:]}
+
+
+def test_what_is_gathered_accepts_no_more_negatives() -> None:
+    """An alternative that costs negatives beside the others is left out."""
+
+    def count_negatives(edits: Sequence[Edit]) -> int:
+        return any("'<'" in str(edit) for edit in edits) and "'>'" in str(edits)
+
+    searched = search(count_negatives)
+    alternatives = [AddAlternative("line", f"IF NAME '{sign}' NAME NEWLINE") for sign in "<>"]
+    less, more = (searched.proposal((edit,), 0) for edit in alternatives)
+    causes = [Cause((0, 1), (less,)), Cause((2, 3), (more,))]
+    [one] = merged_by_reason(searched, causes, [("sign",)] * 4)
+    assert {less, more} == {*one.proposals}
+
+
+def test_lines_left_get_an_alternative_of_the_same_rule() -> None:
+    """What is missing in one rule is sought there, whatever mends the lines by themselves."""
+    searched = search()
+    alternative = AddAlternative("line", "IF NAME '<' NAME NEWLINE")
+    less = searched.proposal((alternative,), 0)
+    causes = [Cause((0, 1), (less,)), Cause((2, 3), (searched.proposal((MORE,), 0),))]
+    [one] = merged_by_reason(searched, causes, [("sign",)] * 4)
+    first = one.proposals[0]
+    assert mends_all(first)
+    assert all(isinstance(e, AddAlternative) and e.rule == "line" for e in first.edits)
+
+
+def test_what_is_missing_in_two_rules_is_one_rule() -> None:
+    """Each gets what only the other one shows; causes that add uncalled rules to one are one."""
+    words = ["HALT", "WAIT", "EXIT"]
+    texts = [f"{word} A\nBODY\n" for word in words] + [f"BODY\n{word} A\n" for word in words[:2]]
+    searched = search_in(APART, texts)
+    rules = ["head", "head", "head", "line", "line"]
+    names = ["halt", "wait", "exit", "halt", "wait"]
+    added = [
+        AddAlternative(rule, f"{name} NEWLINE") for rule, name in zip(rules, names, strict=True)
+    ]
+    causes = [Cause((n,), (searched.proposal((edit,), 0),)) for n, edit in enumerate(added)]
+    assert [frozenset({n}) for n in range(5)] == [c.proposals[0].mended for c in causes]
+    [one] = merged_by_reason(searched, causes, [("word",)] * 5)
+    assert {*added, AddAlternative("line", "exit NEWLINE")} == set(one.proposals[0].edits)
+    united = merged_by_reason(searched, causes, [(word,) for word in "abcde"])
+    assert [(0, 1, 2), (3, 4)] == [cause.lines for cause in united]

@@ -49,6 +49,14 @@ def reads(phrase: Sequence[str], words: Sequence[Token]) -> bool:
 # -------------------------------------------------------------------------- what is written
 
 
+def test_a_rule_that_nothing_calls_is_written() -> None:
+    """It was probably meant for the tokens that it reads, though they are no one operand."""
+    pair = apply(PRELIMINARY, [AddRule(PRELIMINARY.start, "pair\n    : NAME NAME\n    ;")])
+    phraser = Phraser(GrammarProfile(Recognizer(pair)))
+    assert "pair" not in phrases("A B")
+    assert ("pair",) in phraser.phrases(words_of("A B"))
+
+
 @pytest.mark.parametrize(
     ("text", "keywords", "expected"),
     [

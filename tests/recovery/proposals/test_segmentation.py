@@ -48,3 +48,12 @@ def test_enormous_lines_are_not_cut() -> None:
     """A line longer than any statement has no parts: to find them would take hours."""
     assert [1] * 119 == [len(part) for part in CUTTER.parts(words_of("(" * 119)) or []]
     assert CUTTER.parts(words_of("(" * 3_000)) is None
+
+
+def test_a_word_right_behind_a_value_begins_no_operand() -> None:
+    """``9 STEP -1`` is no difference, though STEP is a name elsewhere."""
+    recognizer = Recognizer(read_file(GRAMMAR))
+    lexer = recognizer.lexer
+    words = [(lexer.kinds[x], None) for x in lexer.lexemes("TO 9 STEP -1") if x != " "]
+    parts = Segmenter(RuleMatcher(recognizer)).parts(words) or []
+    assert [1, 1, 1, 2] == [len(part) for part in parts]
