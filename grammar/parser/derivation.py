@@ -89,9 +89,10 @@ class _Rules:
             if not rule.is_lexer:
                 base = self._entry[rule.name] = len(moves)
                 automaton = ordered_automaton(grammar, rule)
-                for state in range(len(automaton.steps)):
+                place = {state: base + at for at, state in enumerate(automaton.stops)}
+                for state in place:
                     found = automaton.moves(state)
-                    moves.append((rule.name, [m and (m[0], base + m[1]) for m in found]))
+                    moves.append((rule.name, [m and (m[0], place[m[1]]) for m in found]))
         same = _merged(moves)
         self._entry = {name: same[position] for name, position in self._entry.items()}
         self._moves = [list(dict.fromkeys(m and (m[0], same[m[1]]) for m in ms)) for _, ms in moves]

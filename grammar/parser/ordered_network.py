@@ -43,6 +43,12 @@ class OrderedAutomaton:
 
     steps: tuple[tuple[Step, ...], ...]
 
+    @property
+    def stops(self) -> list[int]:
+        """The states between symbols, which `moves` lead to, the first one first."""
+        targets = (step.target for steps in self.steps for step in steps if step.symbol is not None)
+        return [FIRST, *targets]
+
     def moves(self, state: int) -> list[tuple[str, int] | None]:
         """Return the symbols that can come next with the state after each, the preferred first.
 

@@ -30,6 +30,7 @@ class Contribution:
     wherever they are in the file.
     """
 
+    path: str
     facts: Mapping[str, str]
     words: frozenset[str]
 
@@ -72,17 +73,19 @@ def contribution(
             known.setdefault(name, []).append("is called")
     for word in unread or ():
         known.setdefault(word, []).append("is not read")
-    facts = {name: f"{path}: {'; '.join(some)}" for name, some in known.items()}
-    return Contribution(facts, words_of(text))
+    facts = {name: "; ".join(some) for name, some in known.items()}
+    return Contribution(path, facts, words_of(text))
 
 
 def needs_of(project: Project, contributions: Sequence[Contribution | None]) -> Iterator[Needs]:
     """Return the needs of each file of a project, in order, even of files without contribution."""
     facts: dict[str, list[str]] = {}
+    paths: dict[str, list[str]] = {}
     for one in contributions:
         for name, fact in one.facts.items() if one else ():
             facts.setdefault(name, []).append(fact)
-    digests = {name: _digest(some) for name, some in facts.items()}
+            paths.setdefault(name, []).append(one.path)
+    digests = {name: _digest((*paths[name], *some)) for name, some in facts.items()}
     reach = _reach({name: _mentioned(some, facts) - {name} for name, some in facts.items()})
     whole = _whole(project)
     names = _digest(sorted(_suggested(project)))
