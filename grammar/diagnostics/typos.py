@@ -12,7 +12,7 @@ same prefix.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from enum import Enum
 
 # Shorter names are similar to too many others.
@@ -98,10 +98,8 @@ class Typos:
         return tuple(self._names[right][0] for right in sorted(near))
 
 
-def _shortened(key: str) -> Iterator[str]:
-    yield key
-    for index in range(len(key)):
-        yield key[:index] + key[index + 1 :]
+def _shortened(key: str) -> list[str]:
+    return [key, *(key[:index] + key[index + 1 :] for index in range(len(key)))]
 
 
 def small_prefix(name: str) -> str:

@@ -13,9 +13,9 @@ empty rounds such a loop has in the tree is not specified.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
-from grammar.parser.derivation import Action, Begin, Deriver
+from grammar.parser.derivation import Action, Begin, Deriver, Steps
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.tree import Outline, Tree
 from support.lazy_dataclass import dataclass
@@ -23,7 +23,7 @@ from support.lazy_dataclass import dataclass
 # The caches of lines and outlines are bounded, and enormous lines are not cached at all; so is the
 # automaton, of which a state with its back pointers takes a kilobyte.
 _MOST_STATES = 20_000
-_MOST_REMEMBERED = 5_000
+_MOST_REMEMBERED = 20_000
 _LONGEST_REMEMBERED = 1_000
 
 
@@ -53,6 +53,7 @@ class Parser:
     def __init__(self, recognizer: Recognizer) -> None:
         self.recognizer = recognizer
         self._deriver = Deriver(recognizer.grammar, recognizer.lexer)
+        self._ends: list[int] = []  # rules that end before a token, by the number of its action
         self._changes: dict[tuple[int, ...], tuple[_Change, ...]] = {}
         self._outlines: dict[tuple[str, tuple[Outline | int, ...]], Outline] = {}
 
@@ -66,7 +67,8 @@ class Parser:
         if self._deriver.size > _MOST_STATES:
             self._deriver.release()
             self._deriver = Deriver(self.recognizer.grammar, lexer)
-            self._changes.clear()  # the numbers of its actions begin anew
+            self._ends.clear()  # the numbers of its actions begin anew
+            self._changes.clear()
         derivation = self._deriver.derive(kinds)
         if derivation is None:
             state, index = self.recognizer.run(self.recognizer.start, kinds)
@@ -105,14 +107,21 @@ class Parser:
         return Outline(rules.pop().rule, tuple(children))
 
     def _lines(self, kinds: Sequence[int], actions: Sequence[int]) -> Iterator[tuple[int, ...]]:
-        """Yield the actions of each line of a file, and of the tokens after the last line end."""
+        """Yield the actions of each line with the blank lines behind it, then the rules that end.
+
+        These end before the next token, so that what is complete with its line ends on it.
+        """
+        ends = self._ends
+        ends += [_ending(steps) for steps, _ in self._deriver.actions[len(ends) :]]
         start, count, line_kind = 0, len(kinds), self.recognizer.line_kind
         while start < count:
             try:
                 end = kinds.index(line_kind, start) + 1
+                while kinds[end] == line_kind:  # the end of the file is the last token
+                    end += 1
             except ValueError:
                 end = count
-            yield tuple(actions[start:end])
+            yield (*actions[start:end], ends[actions[end]] if end < count else 0)
             start = end
 
     def _changes_of(self, line: tuple[int, ...]) -> tuple[_Change, ...]:
@@ -122,28 +131,32 @@ class Parser:
                 self._changes.clear()
                 self._outlines.clear()
             numbered = self._deriver.actions
-            found = tuple(self._worked_out(numbered[number] for number in line))
+            actions = [numbered[number] for number in line[:-1]]
+            found = tuple(self._worked_out(actions, line[-1]))
             if len(line) <= _LONGEST_REMEMBERED:
                 self._changes[line] = found
         return found
 
-    def _worked_out(self, actions: Iterable[Action]) -> Iterator[_Change]:
-        """Yield the effects of a line on the stack of open rules."""
+    def _worked_out(self, actions: Sequence[Action], ends: int) -> Iterator[_Change]:
+        """Yield the effects of a line on the stack of open rules; ``ends`` rules end behind it."""
         changes: list[_Change] = []
         begun: list[tuple[Begin, list[Outline | int]]] = []
-        for steps, kind in actions:
-            for step in steps:
-                if step is not None:
-                    begun.append((step, []))
-                    continue
-                while begun:
-                    (rule, is_last), inside = begun.pop()
-                    (begun[-1][1] if begun else changes).append(self._shared(rule, tuple(inside)))
-                    if not is_last:
-                        break
-                else:  # the rule that ends began on an earlier line
-                    changes.append(None)
-            (begun[-1][1] if begun else changes).append(kind)
+        events = [event for steps, kind in actions for event in (*steps, kind)]
+        ended = _ending(actions[0].steps)  # with the line before
+        for event in (*events[ended:], *[None] * ends):
+            if isinstance(event, int):  # the kind of a token
+                (begun[-1][1] if begun else changes).append(event)
+                continue
+            if event is not None:
+                begun.append((event, []))
+                continue
+            while begun:
+                (rule, is_last), inside = begun.pop()
+                (begun[-1][1] if begun else changes).append(self._shared(rule, tuple(inside)))
+                if not is_last:
+                    break
+            else:  # the rule that ends began on an earlier line
+                changes.append(None)
         yield from changes
         for begin, inside in begun:
             yield begin
@@ -155,3 +168,8 @@ class Parser:
         if found is None:
             found = self._outlines[rule, children] = Outline(rule, children)
         return found
+
+
+def _ending(steps: Steps) -> int:
+    """Return how many rules end before another one begins."""
+    return next((at for at, step in enumerate(steps) if step is not None), len(steps))

@@ -132,7 +132,7 @@ class Builder:
         if not isinstance(outline, Outline) or outline.rule in _BLOCKS:
             return None
         try:
-            plan = draft(outline, self._names, RULES, CHAINS)
+            plan = draft(_without_end(outline), self._names, RULES, CHAINS)
         except TooDeep as error:
             raise TooDeep(first + error.first) from None
         if outline.width <= _WIDEST_REMEMBERED:
@@ -153,6 +153,13 @@ class Builder:
             context.rule,
             failure.follows,
         )
+
+
+def _without_end(outline: Outline) -> Outline:
+    """Return a rule without its line end, which no node includes."""
+    *before, last = outline.children or (0,)
+    is_end = isinstance(last, Outline) and last.rule == "eol"
+    return Outline(outline.rule, tuple(before)) if is_end else outline
 
 
 class _Piece(NamedTuple):
@@ -235,23 +242,6 @@ def _data_list(span: Span, pieces: Sequence[_Piece]) -> ast.DataList:
     return ast.DataList(span, pieces[1].value, is_public, _values(pieces, "initialisation"))
 
 
-def _declaration(span: Span, pieces: Sequence[_Piece]) -> Any:
-    """Return a declaration with or without initial values; or an assignment in a data list."""
-    first = pieces[0]
-    if first.symbol == "definition":
-        return first.value
-    if first.symbol == "variable":
-        return ast.Assignment(span, first.value, pieces[2].value)
-    return ast.VariableDeclaration(
-        span,
-        first.symbol == "DECL",
-        _has(pieces[:3], "GLOBAL"),
-        _has(pieces[:3], "CONST"),
-        _value(pieces, "type") or _value(pieces, "predefinedType"),
-        _values(pieces, "declarator") or _values(pieces, "initialisedDeclarator"),
-    )
-
-
 def _if(span: Span, pieces: Sequence[_Piece]) -> ast.If:
     condition = pieces[1].value
     for place, piece in enumerate(pieces):
@@ -307,8 +297,6 @@ _BLOCKS: Mapping[str, Callable[[Span, Sequence[_Piece]], Any]] = {
     "procedure": _routine,
     "function": _routine,
     "dataList": _data_list,
-    "declaration": _declaration,
-    "initialisation": _declaration,
     "statement": _only,
     "ifStatement": _if,
     "forStatement": _for,

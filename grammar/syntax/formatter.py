@@ -35,6 +35,8 @@ from grammar.syntax.walk import same
 _ROUTINES = frozenset({"procedure", "function"})
 # Set as tables, or by the controller's own templates: nothing between their tokens changes.
 _AS_WRITTEN = _ROUTINES | {"dataList", "declaration", "initialisation"}
+#: Rules whose tokens are set one by one; any other is set as a whole.
+_IN_PARTS = BLOCK_RULES | _AS_WRITTEN
 _INSIDE = frozenset({"statement", "caseBranch", "defaultBranch", "splineItem"})
 #: What ends a block or a branch, and how much deeper the lines before it may lie.
 _ENDS = dict.fromkeys(BRANCHES, 1) | {block.closer: block.depth for block in BLOCKS.values()}
@@ -124,7 +126,7 @@ class Formatter:
                     at += 1
                     continue
                 inside = depth + (more if child.rule in _INSIDE else 0)
-                if child.rule in BLOCK_RULES:
+                if child.rule in _IN_PARTS:
                     todo.append((child, at, inside))
                 elif child.rule != "eol":
                     found = self._spacing.line(child, as_written=as_written)

@@ -5,9 +5,9 @@ rules of `grammar.syntax.statement_rules` and `grammar.syntax.expression_rules` 
 They draft a plan, which is a list of steps: which node, over which tokens, from which values.
 `Plan.run` then builds the nodes of one line with one call for each.
 
-A plan works on a list of values: first the texts of the tokens, then constants, then the result of
-each step in order. An outline is drafted without recursion, so the only limit on nesting is the one
-set here.
+A plan works on a list of values: first the texts of the tokens, then constants, the spans of nodes,
+and the result of each step in order. An outline is drafted without recursion, so the only limit on
+nesting is the one set here.
 """
 
 from __future__ import annotations
@@ -56,7 +56,8 @@ class Draft:
     def __init__(self, width: int) -> None:
         self._width = width
         self._constants: dict[tuple[type, object], int] = {}
-        self._steps: list[tuple[Callable[..., object], int, int, tuple[int, ...]]] = []
+        self._spans: dict[Span, int] = {}
+        self._steps: list[tuple[Callable[..., object], int, tuple[int, ...]]] = []
         self._depths: list[int] = []
 
     def node(
@@ -79,7 +80,8 @@ class Draft:
         )
         if depth > MAX_DEPTH:
             raise TooDeep(first)
-        self._steps.append((make, first, stop - 1, slots))
+        span = self._spans.setdefault((first, stop - 1), len(self._spans))
+        self._steps.append((make, span, slots))
         self._depths.append(depth)
         return self._width + len(self._steps) - 1
 
@@ -98,25 +100,32 @@ class Draft:
     def plan(self, value: Value) -> Plan:
         """Return the finished plan with ``value`` as its result."""
         result = self._slot(value)
-        width, count = self._width, len(self._constants)
+        width, constants = self._width, tuple(value for _, value in self._constants)
+        at_spans = width + len(constants)
+        more = len(constants) + len(self._spans)
 
         def final(slot: int) -> int:
-            return width + ~slot if slot < 0 else slot if slot < width else slot + count
+            return width + ~slot if slot < 0 else slot if slot < width else slot + more
 
         steps = tuple(
-            (make, first, last, _getter([*map(final, slots)]))
-            for make, first, last, slots in self._steps
+            (make, _getter([at_spans + span, *map(final, slots)]))
+            for make, span, slots in self._steps
         )
-        return Plan(width, tuple(value for _, value in self._constants), steps, final(result))
+        return Plan(width, constants, tuple(self._spans), steps, final(result))
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Builds the nodes of all lines with one outline, which has ``width`` tokens."""
+    """Builds the nodes of all lines with one outline, which has ``width`` tokens.
+
+    ``spans`` are the first and the last token of nodes; each of the ``steps`` is what makes a node,
+    and what takes its span and its parts from the values.
+    """
 
     width: int
     constants: tuple[object, ...]
-    steps: tuple[tuple[Callable[..., object], int, int, Callable[[list[Any]], Any]], ...]
+    spans: tuple[Span, ...]
+    steps: tuple[tuple[Callable[..., object], Callable[[list[Any]], Any]], ...]
     result: int
 
     def run(
@@ -127,9 +136,10 @@ class Plan:
         ``lexemes``, ``starts`` and ``ends`` are the texts of all tokens and their offsets.
         """
         values: list[Any] = [*lexemes[first : first + self.width], *self.constants]
+        values += [(starts[first + begin], ends[first + last]) for begin, last in self.spans]
         add = values.append
-        for make, begin, last, get in self.steps:
-            add(make((starts[first + begin], ends[first + last]), *get(values)))
+        for make, get in self.steps:
+            add(make(*get(values)))
         return values[self.result]
 
 
@@ -208,8 +218,8 @@ def _getter(slots: list[int]) -> Callable[[list[Any]], Any]:
     """Return a function that takes the values in ``slots`` from a list, as a sequence."""
     if len(slots) > 1:
         return itemgetter(*slots)
-    only = slots[0] if slots else 0
-    return itemgetter(slice(only, only + len(slots)))
+    (only,) = slots
+    return itemgetter(slice(only, only + 1))
 
 
 # -------------------------------------------------------------------------- choices from the parts

@@ -20,6 +20,24 @@ from grammar.syntax.node_plans import Draft, DraftPart, Rule, Value, after, has,
 # ----------------------------------------------------------------------------------- declarations
 
 
+def _declaration(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+    """Return a declaration with or without initial values; or an assignment in a data list."""
+    first = parts[0]
+    if first.symbol == "definition":
+        return first.value
+    if first.symbol == "variable":
+        return draft.over(ast.Assignment, parts, first.value, parts[2].value)
+    return draft.over(
+        ast.VariableDeclaration,
+        parts,
+        first.symbol == "DECL",
+        has(parts[:3], "GLOBAL"),
+        has(parts[:3], "CONST"),
+        value_of(parts, "type") or value_of(parts, "predefinedType"),
+        values_of(parts, "declarator") or values_of(parts, "initialisedDeclarator"),
+    )
+
+
 def _enumeration(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     constants = values_of(parts, "enumerator")
     return draft.over(
@@ -221,6 +239,8 @@ RULES: Mapping[str, Rule] = {
     "parameters": _all("parameter"),
     "parameter": _parameter,
     "parameterMode": _symbol,
+    "declaration": _declaration,
+    "initialisation": _declaration,
     "definition": _only,
     "enumeration": _enumeration,
     "enumerator": _only,

@@ -81,10 +81,10 @@ def needs_of(project: Project, contributions: Sequence[Contribution | None]) -> 
     """Return the needs of each file of a project, in order, even of files without contribution."""
     facts: dict[str, list[str]] = {}
     paths: dict[str, list[str]] = {}
-    for one in contributions:
-        for name, fact in one.facts.items() if one else ():
+    for given in filter(None, contributions):
+        for name, fact in given.facts.items():
             facts.setdefault(name, []).append(fact)
-            paths.setdefault(name, []).append(one.path)
+            paths.setdefault(name, []).append(given.path)
     digests = {name: _digest((*paths[name], *some)) for name, some in facts.items()}
     reach = _reach({name: _mentioned(some, facts) - {name} for name, some in facts.items()})
     whole = _whole(project)
