@@ -288,7 +288,8 @@ FORM_SYMBOLS = 4
 #: 54 clusters with 1.
 MOST_MERGED_EDITS = 3
 #: Proposals whose alternatives are gathered in one: a missing rule has as many. Measured: of 20
-#: mutants without a rule of several alternatives 4 are repaired, and 1 with nothing gathered.
+#: mutants without a rule of several alternatives (seed 5512) 8 are repaired, and 3 where lines left
+#: get no alternative of the same rule and two rules do not get the same.
 MOST_GATHERED = 16
 #: Tokens that could have come which a title names: more say nothing to a reader. Measured: other
 #: proposals with 1.
