@@ -92,6 +92,7 @@ def _name_of(node: ast.Definition) -> ast.Node:
 
 def _check_body(checker: TypeChecker, routine: RoutineBody) -> None:
     parameters = frozenset(parameter.name.key for parameter in routine.node.parameters)
+    parameters |= checker.context.module.words or frozenset()  # its first line may be unreadable
     for placed in routine.statements:
         if type(placed.statement) in _DEFINITIONS:
             _check_definition(checker, placed.statement, open_sizes=parameters)

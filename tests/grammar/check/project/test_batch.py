@@ -295,3 +295,12 @@ def test_a_head_that_cannot_be_read_is_one_finding(tmp_path: Path) -> None:
     )
     found = check(lay(tmp_path, A__src=text)).diagnostics
     assert ["KRL001"] == [one.code for one in found if one.region.line == 3]
+
+
+def test_arrays_may_be_parameters_of_a_head_that_cannot_be_read(tmp_path: Path) -> None:
+    """An array without a size that the damaged first line of its routine names is a parameter."""
+    text = "DEF A(B[]:IN IN, C[]:OUT)\n  DECL CHAR B[], C[], D[]\n  C[] = B[]\nEND\n"
+    found = check(lay(tmp_path, A__src=text)).diagnostics
+    assert ["the array D needs a size for each dimension"] == [
+        one.message for one in found if one.code == "KSS2086"
+    ]
