@@ -28,7 +28,7 @@ help:
 	@echo 'make determinism  run each command ten times in different ways and compare its records'
 	@echo 'make blends       the laws of blends on thousands of programs, other ones each time'
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
-	@echo 'make test-pages   run the tests that open pages in a real browser (needs Chromium and its driver)'
+	@echo 'make test-slow   run the slow tests: pages in a real browser, a cluster, a full disk, videos'
 	@echo 'make check        style, types, layers, and whether generated code is up to date'
 	@echo 'make grammar      generate the parser from grammar/KRL.g4 (needs Java)'
 	@echo 'make lock         choose versions and hashes for work on the project anew (needs uv)'
@@ -48,12 +48,12 @@ growth: $(BASE)
 	@$(BIN)/krl growth $(ARGS)
 
 # Kept bytecode makes each process that a test starts half as dear.
-test test-pages: export PYTHONDONTWRITEBYTECODE =
+test test-slow: export PYTHONDONTWRITEBYTECODE =
 test: $(DEV)
 	@$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
-test-pages: $(DEV)
-	@$(BIN)/python -m pytest -n auto --dist worksteal -m browser tests/reports $(ARGS)
+test-slow: $(DEV)
+	@$(BIN)/python -m pytest -n auto --dist worksteal -m slow $(ARGS)
 
 check: $(DEV)
 	@$(BIN)/ruff check --quiet --output-format concise

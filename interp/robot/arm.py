@@ -31,7 +31,10 @@ Target = Mapping[str, float]
 
 @dataclass(frozen=True, slots=True)
 class Approximation:
-    """$APO: mm, per cent of half the path, per cent of the speed, degrees [BLD-01 to BLD-06]."""
+    """$APO: mm, per cent of half the path, per cent of the speed, degrees [BLD-01 to BLD-06].
+
+    None is below 0.
+    """
 
     cdis: float = 0.0
     cptp: float = 0.0

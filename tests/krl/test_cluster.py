@@ -23,6 +23,7 @@ from support.parallel.ordered_map import check_scheduler, ordered_map
 from support.parallel.workers import WorkersError
 
 pytest.importorskip("distributed")
+pytestmark = pytest.mark.slow
 
 
 #: What workers run first: whoever edits this checkout while it is tested is not another release.

@@ -10,7 +10,10 @@ from typing import Any
 
 import pytest
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has no limit of files")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform == "win32", reason="has no limit of files"),
+]
 
 #: Runs a command that may write so many bytes to each file, as where a disk has no more.
 _LIMITED = """

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 REPOSITORY = Path(__file__).parents[2]
 DEMO = REPOSITORY / "corpus" / "programs" / "search_demo"
 SEED = os.environ.get("KRL_SYSTEMS_SEED", "1")

@@ -78,6 +78,7 @@ def record_of(folder: Path, run: int) -> bytes:
     ).stdout
 
 
+@pytest.mark.slow
 def test_records_agree_over_hash_seeds_and_processes(tmp_path: Path) -> None:
     """Twenty surveys of damaged files, in one process and in two, are the same to the byte."""
     with ThreadPoolExecutor(2) as pool:

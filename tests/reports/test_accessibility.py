@@ -26,7 +26,7 @@ from tests.reports.test_conform_browser import conform_record
 from tests.reports.test_run_browser import recorded
 
 axe = pytest.importorskip("axe_core_python")
-pytestmark = pytest.mark.browser
+pytestmark = pytest.mark.slow
 
 Json = dict[str, Any]
 SCRIPT = next(Path(axe.__file__).parent.glob("axe*.js"))

@@ -11,7 +11,7 @@ from selenium.webdriver.common.by import By
 from reports.conformance.conform_page import write_conformance_page
 from reports.nightly.nightly_page import write_nightly_page
 
-pytestmark = pytest.mark.browser
+pytestmark = pytest.mark.slow
 
 HOSTILE = "</script><script>window.hacked=1</script><img src=x onerror=window.hacked=1>\x1b[31m"
 Json = dict[str, Any]

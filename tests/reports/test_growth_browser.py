@@ -11,7 +11,7 @@ from selenium.webdriver.common.by import By
 from reports.recovery.growth_page import write_growth_page
 from tests.reports.browsing import HAS_INK, find, find_all, load, row_titles
 
-pytestmark = pytest.mark.browser
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")

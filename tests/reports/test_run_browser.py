@@ -25,7 +25,7 @@ from interp.values.poses import Pose
 from reports.programs.run_page import write_run_page
 from tests.reports.browsing import find, find_all
 
-pytestmark = pytest.mark.browser
+pytestmark = pytest.mark.slow
 
 HOSTILE = "</script><script>window.hacked=1</script><img src=x onerror=window.hacked=1>\x1b[31m"
 _PROGRAM = f"""DEF CELL() ; {HOSTILE}

@@ -15,7 +15,7 @@ from reports.recovery.survey_page import write_survey_page
 from tests.reports.browsing import find, find_all, load, row_titles
 
 RecordBuilder = Callable[[str], dict[str, Any]]
-pytestmark = pytest.mark.browser
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")

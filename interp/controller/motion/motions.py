@@ -276,7 +276,9 @@ class MotionBuilder:
             _numbers(values["$VEL_AXIS"], 100.0) + _numbers(values["$VEL_EXTAX"], 100.0),
             _numbers(values["$ACC_AXIS"], 100.0) + _numbers(values["$ACC_EXTAX"], 100.0),
             _numbers(values["$GEAR_JERK"], 100.0),
-            Approximation(*(_number(apo, name) for name in ("CDIS", "CPTP", "CVEL", "CORI"))),
+            Approximation(
+                *(max(_number(apo, name), 0.0) for name in ("CDIS", "CPTP", "CVEL", "CORI"))
+            ),
             word_of(values["$ORI_TYPE"]),
             word_of(values["$CIRC_TYPE"]),
             self._state.mode == "T1",

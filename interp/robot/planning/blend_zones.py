@@ -75,11 +75,10 @@ def _path_share(track: Track, criterion: str, values: Approximation, *, at_end: 
         return _braking_share(track, values.cvel / 100.0, at_end=at_end)
     if criterion == "C_ORI":
         angle = 0.0 if pose_path is None else math.degrees(max(pose_path.angles))
-        return max(values.cori, 0.0) / angle if angle > 0.0 else 1.0
-    distance = max(values.cdis, 0.0)
+        return values.cori / angle if angle > 0.0 else 1.0
     if pose_path is None:
-        return _way_share(curve, distance, at_end=at_end)
-    return distance / pose_path.length if pose_path.length > 0.0 else 1.0
+        return _way_share(curve, values.cdis, at_end=at_end)
+    return values.cdis / pose_path.length if pose_path.length > 0.0 else 1.0
 
 
 def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
@@ -87,7 +86,7 @@ def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
     stretches = _piece(track, at_end=at_end).limits.stretches
     stretch = stretches[-1] if at_end else stretches[0]
     bounds = stretch.bounds(1.0)
-    speed = max(share, 0.0) * stretch.programmed
+    speed = share * stretch.programmed
     size = stretch.size
     sized = replace(bounds, velocity=speed) * size
     return ramp(speed * size, 0.0, 0.0, sized).distance / size
@@ -102,9 +101,9 @@ def _axis_share(
     takes_both = track.motion.kind == "SPTP"
     shares = []
     if not by_way or takes_both:
-        shares.append(_turning_share(curve, min(max(own.cptp, 0.0), 100.0) / 100.0))
+        shares.append(_turning_share(curve, min(own.cptp, 100.0) / 100.0))
     if by_way or (takes_both and values.cdis > 0.0):
-        shares.append(_way_share(curve, max(values.cdis, 0.0), at_end=at_end))
+        shares.append(_way_share(curve, values.cdis, at_end=at_end))
     return min(shares)
 
 

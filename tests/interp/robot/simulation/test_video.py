@@ -15,6 +15,7 @@ from interp.robot.simulation.video import VideoError, frame_times, write_picture
 
 pytest.importorskip("mujoco")
 image = pytest.importorskip("PIL.Image")
+pytestmark = pytest.mark.slow
 
 TIMES = np.arange(0, 240_001, 12_000, dtype=np.int64)
 AXES = np.linspace((0.0, -90.0, 90.0, 0.0, 0.0, 0.0), (40.0, -60.0, 90.0, 0.0, 0.0, 0.0), 21)
