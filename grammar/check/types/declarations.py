@@ -103,7 +103,7 @@ def _check_definition(checker: TypeChecker, node: ast.Node, *, open_sizes: froze
     match node:
         case ast.VariableDeclaration():
             for declarator in node.declarators:
-                _check_owner(checker, declarator.name)
+                _check_owner(checker, declarator.name, node.type.key)
                 _check_sizes(checker, declarator, declarator.name.key in open_sizes)
         case ast.Structure():
             for group in node.groups:
@@ -123,10 +123,13 @@ _DEFINITIONS: frozenset[type[Any]] = frozenset(
 )
 
 
-def _check_owner(checker: TypeChecker, name: ast.Name) -> None:
-    """Report the declaration of a system variable, which only the controller declares."""
+def _check_owner(checker: TypeChecker, name: ast.Name, written: str = "") -> None:
+    """Report the declaration of a system variable, which only the controller declares.
+
+    One of the right type changes nothing: data lists that are generated have $BWDSTART so.
+    """
     found = checker.context.found(name)
-    if found is not None and found.module is None:
+    if found is not None and found.module is None and str(found.symbol.given) != written:
         message = f"{name.text} is declared by the controller already"
         checker.report("declared-twice", name, message, severity="warning")
 

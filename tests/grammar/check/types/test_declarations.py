@@ -39,6 +39,7 @@ Agrees = Callable[..., None]
         ("TYP-11", ["DECL CHAR A[3]", 'A[] = "ABC"']),
         ("TYP-11", ["DECL CHAR A[3]", 'A[] = "ABCD" ;> KRL206?']),
         ("TYP-11", ["DECL CHAR A[2,3]", 'A[1,] = "ABC"']),
+        ("IOT-03", ["DECL BOOL $BWDSTART = FALSE", "DECL INT $FLAG ;> KRL104?"]),
         ("TYP-12", ["DECL INT A = 3.0"]),
         ("TYP-12", ["DECL INT A = 3.5 ;> KRL209-"]),
         ("TYP-12", ["DECL REAL A = 3"]),
