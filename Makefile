@@ -28,7 +28,7 @@ help:
 	@echo 'make determinism  run each command ten times in different ways and compare its records'
 	@echo 'make blends       the laws of blends on thousands of programs, other ones each time'
 	@echo 'make test         run the tests (ARGS="tests/krl -k door")'
-	@echo 'make test-slow   run the slow tests: pages in a real browser, a cluster, a full disk, videos'
+	@echo 'make test-slow    run the slow tests: pages in a real browser, a cluster, a full disk, videos'
 	@echo 'make check        style, types, layers, and whether generated code is up to date'
 	@echo 'make grammar      generate the parser from grammar/KRL.g4 (needs Java)'
 	@echo 'make lock         choose versions and hashes for work on the project anew (needs uv)'

@@ -148,7 +148,7 @@ def is_alike(one: Observation, other: Observation) -> bool:
         first.points[:, :3] - second.points[:, :3],
         turned - 360.0 * np.round(turned / 360.0),
     )
-    return all((np.abs(one) <= 1e-6).all() for one in off)
+    return all((np.abs(part) <= 1e-6).all() for part in off)
 
 
 # ------------------------------------------------------------------------------- marked lines

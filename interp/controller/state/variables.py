@@ -194,9 +194,6 @@ class Variables:
             self._untyped_parts[path] = copied(value)
             return
         before = self._parts(path)
-        if name in self._with_twins:  # existing snapshots keep the old value
-            self._values[name] = copied(self._root(name))
-            self._snapshot = None
         self._store(path, value)
         self.writes += before is None or before != self._parts(path)
 
@@ -236,6 +233,9 @@ class Variables:
 
     def _store(self, path: Path, value: Value) -> None:
         name = str(path[0])
+        if name in self._with_twins:  # existing snapshots keep the old value
+            self._values[name] = copied(self._root(name))
+            self._snapshot = None
         holder = _Holder(self._root(name), self.type_of(name))
         holder.put(path[1:], value)
         self._values[name] = holder.root
@@ -262,7 +262,6 @@ class Variables:
             self._values[name] = copied(value)
             return
         try:
-            self._values[name] = copied(self._root(name))
             self._store((name,), value)
         except Fault:  # the data list declares another type, which is then the right one
             self._values[name] = copied(value)
