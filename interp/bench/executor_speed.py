@@ -362,7 +362,7 @@ def _controlled(executor: str, rounds: int) -> float:
 _WRITING = f"""
 DEF RUN()
    DECL INT I
-   FOR I = 1 TO {_REQUESTS}
+   FOR I = 1 TO {{}}
       {_RESULT} = I
    ENDFOR
 END
@@ -370,7 +370,7 @@ END
 _READING = f"""
 DEF RUN()
    DECL INT I, K
-   FOR I = 1 TO {_REQUESTS}
+   FOR I = 1 TO {{}}
       K = {_RESULT}
    ENDFOR
 END
@@ -387,7 +387,7 @@ def _request_cost(executor: str, rounds: int) -> dict[str, float]:
 
 
 def _cost(text: str, executor: str, rounds: int) -> float:
-    program = _program(text)
+    program = _program(text.format(_REQUESTS))
     best = math.inf
     for _ in range(rounds):
         running = program.executor(executor, _LIMITS)

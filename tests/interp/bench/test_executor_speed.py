@@ -34,6 +34,8 @@ def _little_work(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first amount is enough: what is stated here does not hang on how long it takes."""
     monkeypatch.setattr("interp.bench.executor_speed._LEAST", 0.0)
     monkeypatch.setattr("interp.bench.executor_speed._CONTROLLED", 0.0)
+    monkeypatch.setattr("interp.bench.executor_speed._COUNTS", (2, 80))
+    monkeypatch.setattr("interp.bench.executor_speed._REQUESTS", 200)
 
 
 def test_record_of_the_bench(tmp_path: Path) -> None:

@@ -31,7 +31,7 @@ from interp.session import EXECUTORS, RunSetup, run_program
 Go = Callable[..., Any]
 
 #: Loops have fewer rounds here, so that no test takes long.
-FEW = replace(Profile.load(), statements=50, requests=20)
+FEW = replace(Profile.load(), statements=20, requests=8)
 
 
 def test_language() -> None:
@@ -234,16 +234,16 @@ def test_loops_with_a_heartbeat_wait_too(body: str, seconds: float) -> None:
 )
 def test_endless_loops_end(monkeypatch: pytest.MonkeyPatch, body: str) -> None:
     """After many requests without a wait, the last of them slower; a script lets them go on."""
-    monkeypatch.setattr(waits, "_ENDLESS", 10_000)
-    monkeypatch.setattr(waits, "_MOST", 12_000)
+    monkeypatch.setattr(waits, "_ENDLESS", 1_000)
+    monkeypatch.setattr(waits, "_MOST", 1_200)
     text = f"DEF main ( )\n$TIMER_STOP[1]=FALSE\nLOOP\n{body}ENDLOOP\nEND\n"
     program = load([Source(text, "main.src")], "main.src")
     executors = (EXECUTORS[0], EXECUTORS[-1])
-    setups = [RunSetup(executor=one, until=8_000_000) for one in executors]
+    setups = [RunSetup(executor=one, until=2_000_000) for one in executors]
     first, *others = [run_program(program, setup) for setup in setups]
     assert "budget" == first.outcome.ending
     assert all(first.events == other.events for other in others)
-    script = Script.read("t=7 IN[1]=TRUE")
+    script = Script.read("t=1.5 IN[1]=TRUE")
     assert "time" == run_program(program, replace(setups[-1], script=script)).outcome.ending
 
 
@@ -272,10 +272,10 @@ def test_catching_faults_is_no_polling(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("body", ["", "N=N+1\n", "IF $IN[2] THEN\n$OUT[1]=TRUE\nENDIF\n"])
 def test_polling_is_no_endless_loop(monkeypatch: pytest.MonkeyPatch, body: str) -> None:
     """It goes on until the time is over on every executor, with a trace and without."""
-    monkeypatch.setattr(waits, "_MOST", 4_000)
+    monkeypatch.setattr(waits, "_MOST", 800)
     text = f"DEF main ( )\nINT N\nN=0\nWHILE NOT $IN[1]\n{body}ENDWHILE\nEND\n"
     program = load([Source(text, "main.src")], "main.src")
-    setup = RunSetup(profile=FEW, until=9_000_000)
+    setup = RunSetup(profile=FEW, until=2_500_000)
     assert {"time"} == {
         run_program(program, replace(setup, executor=one, is_traced=is_traced)).outcome.ending
         for one in EXECUTORS
