@@ -45,7 +45,8 @@ def problem(grammar: Grammar) -> str | None:
             wrong = _problem(grammar, rule, element)
             if wrong:
                 return f"{_line(grammar, index, element.span[0])}: rule {rule.name}: {wrong}"
-    cycle = _left_recursion(grammar)
+    lengths = _lengths(grammar.rules)
+    cycle = _left_recursion(grammar, lengths)
     if cycle:
         what = "recursive tokens" if cycle[0][0].isupper() else "left recursion"
         line = _line(grammar, names.index(cycle[0]))
@@ -58,7 +59,6 @@ def problem(grammar: Grammar) -> str | None:
     if large:
         line = _line(grammar, names.index(large))
         return f"{line}: {large} and what it refers to: more than {_MOST_CHARACTERS:,} characters"
-    lengths = _lengths(grammar.rules)
     endless = next((name for name in names if math.isinf(lengths[name])), None)
     if endless is None:
         return None
@@ -149,12 +149,11 @@ def _problem(grammar: Grammar, rule: Rule, element: Element) -> str | None:
     return None
 
 
-def _left_recursion(grammar: Grammar) -> list[str] | None:
+def _left_recursion(grammar: Grammar, lengths: Mapping[str, float]) -> list[str] | None:
     """Return the rules on a left-recursive cycle, the first repeated at the end, or ``None``.
 
-    Lexer rules may not be recursive at all.
+    ``lengths`` are those of `_lengths`. Lexer rules may not be recursive at all.
     """
-    lengths = _lengths(grammar.rules)
 
     def leading(elements: tuple[Element, ...]) -> Iterator[str]:
         for element in elements:
@@ -216,7 +215,7 @@ def _lengths(rules: Iterable[Rule]) -> Mapping[str, float]:
 
     Rules that are not among ``rules`` count as one token.
     """
-    rules = tuple(rules)
+    rules = tuple(rules)[::-1]  # most rules refer to later ones
     lengths: dict[str, float] = dict.fromkeys((rule.name for rule in rules), math.inf)
     changed = True
     while changed:
