@@ -1,6 +1,6 @@
 """Types of the JSON records that `krl recover` and `krl growth` write.
 
-Fields are documented in docs/architecture.md. Others read them, so fields are added and never
+Fields are documented in docs/survey-record.md. Others read them, so fields are added and never
 changed. Lines and columns count from 1; counts of files include copies, but for ``distinct``.
 """
 

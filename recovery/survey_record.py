@@ -1,6 +1,6 @@
 """The record of a survey: the JSON that `krl recover` writes and the page reads.
 
-Its fields are a contract (docs/architecture.md): others read it from outside.
+Its fields are a contract (docs/survey-record.md): others read it from outside.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The search for an edit that repairs most lines of a group and accepts least.
 
 Candidate edits for some of the lines are first tried on a sample, then the best of them on all
-lines without a cause. docs/architecture.md says how they are ranked.
+lines without a cause. docs/recovery.md says how they are ranked.
 """
 
 from __future__ import annotations
