@@ -1,4 +1,4 @@
-"""Error recovery: builds a syntax tree although some lines have syntax errors.
+"""Error recovery of the check: builds a syntax tree although some lines have syntax errors.
 
 A syntax error costs its statement, not the file. The first line that cannot be read is overwritten
 with blanks, so that all offsets stay valid, and the text is parsed again, until it is a program.

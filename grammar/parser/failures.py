@@ -1,4 +1,4 @@
-"""Error recovery by lines: all failures of a file, not only the first.
+"""All failures of a file, each with the rule it is in and the tokens expected there.
 
 KRL is a language of lines, so after a failure reading continues with the next line. The state in
 which it continues is a guess. There are three, and the first in which the next line can be read is

@@ -24,7 +24,7 @@ from grammar.notation.model import (
     Repeat,
     Rule,
 )
-from grammar.parser.dfa import (
+from grammar.parser.lexer_automaton import (
     CharAutomaton,
     automaton_of,
     both_cases,

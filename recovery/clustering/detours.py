@@ -20,8 +20,9 @@ from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, MakeO
 from grammar.notation.g4 import read_rule
 from grammar.notation.model import Alternative, Grammar, GrammarError, Repeat, Rule
 from grammar.parser.lazy_automaton import Configuration, Core
-from grammar.parser.network import Network, Reach, RuleAutomaton, exact_automata
+from grammar.parser.network import Network, Reach
 from grammar.parser.recognizer import Recognizer, State
+from grammar.parser.rule_automaton import RuleAutomaton, exact_automata
 from recovery.forms.parts import parts
 from recovery.tuning import MOST_READINGS, MOST_STATES
 

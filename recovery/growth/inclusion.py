@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from grammar.notation.model import Grammar, Literal, Rule
-from grammar.parser.network import Network, RuleAutomaton
+from grammar.parser.network import Network
+from grammar.parser.rule_automaton import RuleAutomaton
 
 
 def fixed_texts_added(

@@ -1,4 +1,7 @@
-"""The site of a syntax error, with the tokens and the block of its line, and the mistake there."""
+"""The site of a syntax error, with the tokens and the block of its line, and the mistake there.
+
+Its rule and the expected tokens come from `grammar.parser.failures`.
+"""
 
 from __future__ import annotations
 

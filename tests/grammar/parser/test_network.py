@@ -1,4 +1,4 @@
-"""Rules become minimal deterministic automata, linked into one network."""
+"""The automata of rules, linked into one network."""
 
 from collections.abc import Callable
 from random import Random
@@ -7,20 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grammar.notation.addresses import element_at, sequences
 from grammar.notation.edits import AddAlternative, AddToken, apply
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
-from grammar.notation.model import Grammar, Literal, Reference
+from grammar.notation.model import Grammar
 from grammar.notation.wellformed import problem
 from grammar.parser.lexer import lexer_of
 from grammar.parser.network import (
     Network,
-    RuleAutomaton,
     is_left_recursive,
     may_be_empty,
     network_of,
-    rule_automaton,
     with_rule,
 )
 from grammar.parser.recognizer import Recognizer
@@ -41,73 +38,10 @@ def grammar_of(rules: str) -> Grammar:
     return read(f"grammar T;\n{rules}\n{TOKENS}")
 
 
-def automaton_of(rule: str) -> RuleAutomaton:
-    grammar = grammar_of(f"{rule}\nt : A | B t ;")
-    return rule_automaton(grammar, grammar.rules[0])
-
-
 def accepts(network: Network, tokens: list[str]) -> int | None:
     """Where the recogniser of a network stops."""
     recognizer = Recognizer(PRELIMINARY, network)
     return recognizer.run(recognizer.start, [network.lexer.kind_of[t] for t in tokens])[1]
-
-
-# -------------------------------------------------------------------- automata of rules
-
-
-@pytest.mark.parametrize(
-    ("rule", "edges", "final"),
-    [
-        ("s : A B ;", [{"A": 1}, {"B": 2}, {}], {2}),
-        ("s : A | A B ;", [{"A": 1}, {"B": 2}, {}], {1, 2}),
-        ("s : A B | t B ;", [{"A": 1, "t": 1}, {"B": 2}, {}], {2}),
-        ("s : ;", [{}], {0}),
-        ("s : A* ;", [{"A": 0}], {0}),
-        ("s : A+ ;", [{"A": 1}, {"A": 1}], {1}),
-        ("s : A (',' A)* ;", [{"A": 1}, {"COMMA": 0}], {1}),
-        ("s : (A? B?)? ;", [{"A": 1, "B": 2}, {"B": 2}, {}], {0, 1, 2}),
-        ("s : ((A | 'b')* 'a')? ;", [{"A": 0, "B": 1}, {"A": 0, "B": 1}], {0}),
-    ],
-)
-def test_a_rule_is_the_smallest_automaton(
-    rule: str, edges: list[dict[str, int]], final: set[int]
-) -> None:
-    """States that read on alike are one, and no state reads one symbol in two ways."""
-    grammar = read(f"grammar T;\n{rule}\nt : A | B t ;\n{TOKENS}COMMA : ',' ;\n")
-    automaton = rule_automaton(grammar, grammar.rules[0])
-    assert edges == [dict(e) for e in automaton.edges]
-    assert final == automaton.final
-
-
-def test_where_in_the_rule_a_state_stands() -> None:
-    """`places` are the addresses of the elements that may come next, and of ends of sequences."""
-    automaton = automaton_of("s : A (B | C t)? A ;")
-    assert automaton.places[0] == {(1, 1)}
-    assert automaton.places[automaton.edges[0]["A"]] == {(1, 2), (1, 2, 1, 1), (1, 2, 2, 1), (1, 3)}
-    after_c = automaton.edges[automaton.edges[0]["A"]]["C"]
-    assert automaton.places[after_c] == {(1, 2, 2, 2)}
-    after_group = automaton.edges[after_c]["t"]
-    assert automaton.places[after_group] == {(1, 2, 1, 2), (1, 2, 2, 3), (1, 3)}
-    (last,) = automaton.final
-    assert automaton.places[last] == {(1, 4)}
-
-
-@pytest.mark.parametrize("name", ["krl", "preliminary"])
-def test_places_name_what_is_read_there(name: str, request: pytest.FixtureRequest) -> None:
-    """A state reads the symbols of the elements at its places, and every place has a state."""
-    grammar: Grammar = request.getfixturevalue(name)
-    for rule in (r for r in grammar.rules if not r.is_lexer):
-        automaton = rule_automaton(grammar, rule)
-        lengths = {at: len(alternative.elements) for at, alternative in sequences(rule)}
-        for edges, places in zip(automaton.edges, automaton.places, strict=True):
-            elements = [element_at(rule, p) for p in places if p[-1] <= lengths[p[:-1]]]
-            symbols = [e for e in elements if isinstance(e, Reference | Literal)]
-            assert {grammar.token_of(e) for e in symbols} <= set(edges)
-        expected = {(*at, n) for at, size in lengths.items() for n in range(1, size + 2)}
-        assert expected == set().union(*automaton.places)
-
-
-# ---------------------------------------------------------------------------- the network
 
 
 @pytest.mark.parametrize("name", ["krl", "preliminary"])

@@ -1,4 +1,4 @@
-"""Deterministic finite automata over characters: lexer rules become one longest-match pattern.
+"""Lexer rules as one deterministic automaton over characters, and as one pattern for ``re``.
 
 ANTLR's lexer takes the longest match; Python's ``re`` takes the first alternative that matches. The
 union of all lexer rules is therefore made deterministic (subset construction) and minimal. From the

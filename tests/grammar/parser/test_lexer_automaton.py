@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from grammar.notation.g4 import read
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar, GrammarError, normalised
-from grammar.parser.dfa import (
+from grammar.parser.lexer_automaton import (
     CharAutomaton,
     automaton_of,
     both_cases,
