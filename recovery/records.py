@@ -173,7 +173,7 @@ class _Counts(TypedDict):
     parsed_bytes: int
     seconds: float
     analysis_seconds: NotRequired[float]
-    greedy: list[OrderRecord]
+    greedy: list[OrderRecord]  # the mending order
     clusters: list[ClusterRecord]
 
 

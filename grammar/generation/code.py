@@ -7,12 +7,13 @@ program. A `Style` says what they may choose and how often. There are two: `clos
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Protocol
 
 from grammar.generation.choices import Choices, Weighted
+from grammar.generation.layout import Layout
 from grammar.generation.literals import Literals
 from grammar.generation.scope import Parameter, Scope
 from grammar.semantics.types import Type
@@ -26,26 +27,6 @@ class Naming(Protocol):
 
     def label(self) -> str:
         """Return a name for a label."""
-
-
-@dataclass(frozen=True, slots=True)
-class Spelling:
-    """White space: indentation, and blanks around operators, after commas and before arguments."""
-
-    indent: str = "  "
-    eq: str = "="
-    gap: str = " "
-    comma: str = ", "
-    before: str = ""
-
-    def call(self, name: str, arguments: Iterable[str]) -> str:
-        """Return a call as a statement or as part of an expression."""
-        return f"{name}{self.before}({self.comma.join(arguments)})"
-
-    def binary(self, left: str, operator: str, right: str) -> str:
-        """Return an operation; an operator that is a word is always surrounded by blanks."""
-        gap = " " if operator[0].isalpha() else self.gap
-        return f"{left}{gap}{operator}{gap}{right}"
 
 
 #: Returns an expression; the number is the greatest depth of nesting.
@@ -64,7 +45,7 @@ class Style:
     """
 
     is_closed: bool
-    spelling: Spelling
+    layout: Layout
     literals: Literals
     #: Rules for expressions of a type other than atoms, calls and functions.
     expressions: Mapping[Type, Weighted[ExpressionRule]]
@@ -184,14 +165,14 @@ class Code:
         self.style = style
         self.names = names
         self.scope = scope
-        self.spelling = style.spelling
+        self.layout = style.layout
         self.size = size
         self.budget = budget
         self.risk = risk
         self.moving = moving
         self.part = part or Part()
         self.lines: list[str] = []
-        self.pad = style.spelling.indent
+        self.pad = style.layout.indent
         self.level = 1
         self.counters: list[Counter] = []
         self.passes: list[str] = []
@@ -210,16 +191,16 @@ class Code:
     def set(self, variable: str, value: str) -> bool:
         """Write an assignment."""
         remark = self.style.remark(self.choices) if self.style.remark else ""
-        return self.line(f"{variable}{self.spelling.eq}{value}{remark}")
+        return self.line(f"{variable}{self.layout.eq}{value}{remark}")
 
     def call(self, name: str, *arguments: str) -> bool:
         """Write a call as a statement."""
-        return self.line(self.spelling.call(name, arguments))
+        return self.line(self.layout.call(name, arguments))
 
     @contextmanager
     def indented(self) -> Iterator[None]:
         """Indent the lines of the context by one step."""
-        pad, self.pad = self.pad, self.pad + self.spelling.indent
+        pad, self.pad = self.pad, self.pad + self.layout.indent
         self.level += 1
         yield
         self.level -= 1

@@ -83,7 +83,7 @@ def switch(code: Code) -> bool:
         given, left = left[:count_], left[count_:]
         if names and style.is_closed and choices.chance(20):
             given.append(choices.pick(names))
-        code.line(f"CASE {code.spelling.comma.join(given)}")
+        code.line(f"CASE {code.layout.comma.join(given)}")
         with code.indented():
             statements(code, 2)
     if choices.chance(60):
@@ -136,7 +136,7 @@ def loop_for(code: Code) -> bool:
     written = "" if step == 1 and choices.chance(60) else f" STEP {step}"
     code.spend(2)
     with (
-        code.block(f"FOR {name}{code.spelling.eq}{begin} TO {end}{written}", "ENDFOR"),
+        code.block(f"FOR {name}{code.layout.eq}{begin} TO {end}{written}", "ENDFOR"),
         code.repeated(times + 1),
     ):
         code.spend()

@@ -114,14 +114,14 @@ def call_of(code: Code, routine: Routine) -> str:
     """Return a call; its cost is counted at the current place."""
     if not routine.deepest:
         code.spend(routine.cost)
-        return code.spelling.call(routine.name, _arguments(code, routine.parameters))
+        return code.layout.call(routine.name, _arguments(code, routine.parameters))
     deepest = max(min(code.left() // routine.cost - 1, routine.deepest), 1)
     bound = code.choices.between(1, min(deepest, 6))
     if deepest > _TOO_DEEP and code.risks():
         bound = _TOO_DEEP
     code.spend(routine.cost * (bound + 1))
     given = _arguments(code, routine.parameters[1:])
-    return code.spelling.call(routine.name, [str(bound), *given])
+    return code.layout.call(routine.name, [str(bound), *given])
 
 
 def _arguments(code: Code, parameters: Sequence[Parameter]) -> list[str]:
@@ -237,7 +237,7 @@ def chain(type_: Type) -> ExpressionRule:
                 right = str(choices.between(0, 4))
             else:
                 right = atom(code, type_)
-            found = code.spelling.binary(found, sign, right)
+            found = code.layout.binary(found, sign, right)
         return found
 
     return rule
@@ -257,7 +257,7 @@ def pose(type_: Structure) -> ExpressionRule:
         if choices.chance(45):
             return atom(code, type_)
         frames = [_frame(code, choices.pick(POSES)) for _ in range(choices.between(1, depth))]
-        gap = code.spelling.gap
+        gap = code.layout.gap
         return f"{gap}:{gap}".join([*frames, _frame(code, type_)])
 
     return rule
@@ -303,4 +303,4 @@ def constant_comparison(code: Code, depth: int) -> str:
     if left is None:
         return f"{atom(code, BOOL)}==TRUE"
     right = read(code, type_) if choices.chance(30) else None
-    return code.spelling.binary(left, choices.pick(_EQUAL), right or constant(code, type_))
+    return code.layout.binary(left, choices.pick(_EQUAL), right or constant(code, type_))

@@ -27,7 +27,7 @@ def motion_text(code: Code, kind: str) -> str:
     choices, style = code.choices, code.style
     text = f"{kind} {style.goal(code, kind)}"
     if "CIRC" in kind:
-        text += f",{code.spelling.gap}{style.goal(code, kind)}"
+        text += f",{code.layout.gap}{style.goal(code, kind)}"
         if choices.chance(40 if kind[0] == "S" else 50):
             text += f", CA {expression(code, REAL, 1)}"
     return text
@@ -98,9 +98,9 @@ def spline_block(code: Code) -> bool:
         for _ in range(choices.between(1, 4)):
             _item(code, edges, is_axis=is_axis, is_timed=is_timed)
         if is_timed:
-            code.line(f"TIME_BLOCK END{code.spelling.eq}{expression(code, REAL, 1)}")
+            code.line(f"TIME_BLOCK END{code.layout.eq}{expression(code, REAL, 1)}")
         elif edges == ["END"]:
-            code.line(f"CONST_VEL END{code.spelling.eq}{_distance(code)}")
+            code.line(f"CONST_VEL END{code.layout.eq}{_distance(code)}")
     return code.line(f"ENDSPLINE{choices.pick(('', '', ' C_SPL'))}")
 
 
@@ -109,7 +109,7 @@ def _item(code: Code, edges: list[str], *, is_axis: bool, is_timed: bool) -> Non
 
     ``edges`` are the edges of the CONST_VEL range that have not been written yet.
     """
-    choices, eq = code.choices, code.spelling.eq
+    choices, eq = code.choices, code.layout.eq
     way = choices.below(10)
     if way < 2:
         code.line(f"TRIGGER WHEN PATH{eq}{_distance(code)}{_onstart(code)} {_triggered(code)}")
@@ -136,7 +136,7 @@ def _onstart(code: Code) -> str:
 
 def _triggered(code: Code) -> str:
     """Return the end of a trigger: delay, action, priority."""
-    choices, eq = code.choices, code.spelling.eq
+    choices, eq = code.choices, code.layout.eq
     delay = choices.pick(("0", "20", "-10.5", f"{operand(code, INT, 1)} B_AND 255"))
     actions = code.scope.actions()
     if actions and choices.chance(50):
@@ -149,7 +149,7 @@ def _triggered(code: Code) -> str:
         if found is not None:
             action = f"{found}{eq}{expression(code, INT, 1)}"
     if way == 1:
-        action = code.spelling.call("PULSE", (output(code), "TRUE", "0.2"))
+        action = code.layout.call("PULSE", (output(code), "TRUE", "0.2"))
     if action is None:
         value = choices.pick(("TRUE", "FALSE", truth(code, 1)))
         action = f"{output(code)}{eq}{value}"
@@ -164,14 +164,14 @@ def action_call(code: Code, routine: Routine) -> str:
         else target(code, one.type, is_local=code.choices.chance(70)) or constant(code, one.type)
         for one in routine.parameters
     ]
-    return code.spelling.call(routine.name, given)
+    return code.layout.call(routine.name, given)
 
 
 def trigger(code: Code) -> bool:
     """Write a TRIGGER and its motion."""
     if code.part.is_action:
         return False
-    choices, eq = code.choices, code.spelling.eq
+    choices, eq = code.choices, code.layout.eq
     code.spend(2)
     if not code.style.has_splines or choices.chance(60):
         place = choices.pick(("0", "1"))

@@ -81,9 +81,9 @@ def output(code: Code, _depth: int = 0) -> str:
 
 def _filler(place: str) -> ExpressionRule:
     if place == "~":
-        return lambda code, _depth: code.spelling.gap
+        return lambda code, _depth: code.layout.gap
     if place == ":=":
-        return lambda code, _depth: code.spelling.eq
+        return lambda code, _depth: code.layout.eq
     content = place[1:-1]
     if content in _FILLERS:
         return _FILLERS[content]

@@ -41,8 +41,8 @@ def datum(
         return [first]
     values = style.literals.initialisation(choices, type_, name)
     if isinstance(type_, Array):
-        return [first, *(f"{target}{style.spelling.eq}{value}" for target, value in values)]
-    return [f"{first}{style.spelling.eq}{values[0][1]}"]
+        return [first, *(f"{target}{style.layout.eq}{value}" for target, value in values)]
+    return [f"{first}{style.layout.eq}{values[0][1]}"]
 
 
 def constant_datum(
@@ -52,7 +52,7 @@ def constant_datum(
     scope.add(Variable(name, type_, is_writable=False, is_local=False))
     word = "GLOBAL " if is_global else ""
     value = style.literals.constant(choices, type_)
-    return f"DECL {word}CONST {type_name(type_)} {name}{style.spelling.eq}{value}"
+    return f"DECL {word}CONST {type_name(type_)} {name}{style.layout.eq}{value}"
 
 
 def enumeration(type_: Enumeration, *, is_global: bool, comma: str = ",") -> str:
@@ -99,7 +99,7 @@ def declare(code: Code, types: Sequence[Type], name_of: Callable[[Type], str]) -
         name, style = name_of(type_), code.style
         is_joined = style.group_share and found and type_name(found[-1].type) == type_name(type_)
         if is_joined and code.choices.chance(style.group_share):
-            code.lines[-1] += f"{style.spelling.comma}{declarator(type_, name)}"
+            code.lines[-1] += f"{style.layout.comma}{declarator(type_, name)}"
         else:
             code.line(f"{decl(code.choices, style, type_)} {declarator(type_, name)}")
         has_value = not code.choices.chance(style.bare_local_share)
@@ -122,15 +122,15 @@ def routine_text(
     code: Code, routine: Routine, *, is_global: bool = False, close: str = ")"
 ) -> list[str]:
     """Return the lines of a routine with its first and last one."""
-    spelling = code.spelling
+    layout = code.layout
     formal = []
     for one in routine.parameters:
         rank = len(one.type.sizes) if isinstance(one.type, Array) else 0
         index = f"[{',' * (rank - 1)}]" if rank else ""
         mode = (":OUT" if one.is_out else ":IN") if one.is_explicit else ""
         formal.append(f"{one.name}{index}{mode}")
-    word, given = "GLOBAL " if is_global else "", spelling.comma.join(formal)
-    name = f"{routine.name}{spelling.before}({given}{close}"
+    word, given = "GLOBAL " if is_global else "", layout.comma.join(formal)
+    name = f"{routine.name}{layout.before}({given}{close}"
     if routine.result is None:
         return [f"{word}DEF {name}", *code.lines, "END"]
     size = f"[{routine.result.sizes[0]}]" if isinstance(routine.result, Array) else ""

@@ -139,7 +139,7 @@ def recover(
         name = first.name
         gone: list[Construct] = []
         if without:
-            from recovery.induction.growth_record import without_some
+            from recovery.induction.induced_ledger import without_some
 
             chosen, gone = without_some(chosen, accepted, without, seed)
             name = f"KRL.g4 less {len(gone)} constructs"

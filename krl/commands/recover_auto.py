@@ -3,8 +3,6 @@
 import json
 import time
 from collections.abc import Sequence
-from datetime import UTC, datetime
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +16,7 @@ if TYPE_CHECKING:
     from grammar.notation.edits import Edit
     from grammar.notation.model import Grammar
     from recovery.induction.comparison import Share
-    from recovery.induction.growth_record import Growth
+    from recovery.induction.induced_ledger import InducedLedger
     from recovery.ledger.construct import Construct
     from recovery.negatives.negatives import Negative
 
@@ -53,6 +51,7 @@ def recover_auto(
     from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
     from grammar.parser.lexer import ABSENT, lexer_of
+    from recovery.induction.auto_record import record_of
     from recovery.induction.comparison import compared
     from recovery.induction.corpus_lines import held_out
     from recovery.induction.rounds import Induction
@@ -67,8 +66,8 @@ def recover_auto(
         goal = read_file(target, read_foreign) if target else None
         language = language_of(suffix) if suffix else KRL
         files = language.files(roots)
-        growth, struck = _begun(start, out, strike, resume=resume)
-    lexer = lexer_of(growth.start)
+        ledger, struck = _begun(start, out, strike, resume=resume)
+    lexer = lexer_of(ledger.start)
     for kind, what in ((lexer.line_kind, "line ends"), (lexer.name_kind, "names")):
         if kind == ABSENT:
             raise InputError(
@@ -81,51 +80,57 @@ def recover_auto(
         raise InputError("no file is left to learn from: hold out less")
     generated = evenly(language.negatives(4 * _NEGATIVES, _SEED), _NEGATIVES)
     every = NegativeSet((*negatives, *generated))
-    induction = Induction(growth.grammar, shown, held, every, language=language, struck=struck)
-    record: dict[str, Any] = {
-        "start": name,
-        "start_sha256": growth.start.sha256,
-        "without": [construct.id for construct in taken_out],
-        "held_out": list(origins),
-        "seed": seed,
-        "rounds": growth.rounds,
-        "finished": False,
-        "version": metadata.version("krl-workbench"),
-    }
+    induction = Induction(ledger.grammar, shown, held, every, language=language, struck=struck)
+
+    def record(is_finished: bool = False, reached: dict[str, Any] | None = None) -> dict[str, Any]:
+        return record_of(
+            ledger,
+            start=name,
+            taken_out=taken_out,
+            held_out=origins,
+            seed=seed,
+            seconds=time.monotonic() - began,
+            is_finished=is_finished,
+            target=reached,
+        )
+
+    is_finished = False
     try:
         for done in induction.rounds():
-            growth.add(done)
-            _say(len(growth.rounds), growth)
-            _write(growth, record, out, json_file, struck, began)
-        record["finished"] = induction.is_finished
-        if not induction.is_finished:
+            ledger.add(done)
+            _say(len(ledger.rounds), ledger)
+            _write(ledger, record(), out, json_file, struck)
+        is_finished = induction.is_finished
+        if not is_finished:
             typer.echo("stopped at the limit of rounds; --resume continues", err=True)
     except KeyboardInterrupt:
         typer.echo(f"interrupted; {out} holds the results so far, --resume continues", err=True)
-    record["rules"] = sum(not rule.is_lexer for rule in growth.grammar.rules)
+    reached = None
     if target and goal:
-        record["target"] = {
+        reached = {
             "name": target.name,
-            **compared(growth.grammar, goal, shown, held, language),
+            **compared(ledger.grammar, goal, shown, held, language),
         }
-        _say_target(record)
-    page = _write(growth, record, out, json_file, struck, began)
-    typer.echo(f"{out / 'grammar.g4'}: {len(growth.constructs)} steps; {page}")
+    final = record(is_finished, reached)
+    if reached:
+        _say_target(final)
+    page = _write(ledger, final, out, json_file, struck)
+    typer.echo(f"{out / 'grammar.g4'}: {len(ledger.constructs)} steps; {page}")
     return FINE
 
 
 def _begun(
     start: "Grammar", out: Path, strike: Sequence[str], *, resume: bool
-) -> "tuple[Growth, list[tuple[Edit, ...]]]":
+) -> "tuple[InducedLedger, list[tuple[Edit, ...]]]":
     """Return where to continue, and the edits that must not be taken again."""
     from grammar.notation.edits import from_data
     from grammar.notation.g4 import read_file
-    from recovery.induction.growth_record import Growth, without
+    from recovery.induction.induced_ledger import InducedLedger, without
     from recovery.ledger.ledger import Ledger, in_force
     from support.files.untrusted import read_bytes
 
     if not (resume or strike):
-        return Growth(start, start), []
+        return InducedLedger(start, start), []
     if not (out / "start.g4").is_file():
         raise InputError(f"{out}: there is nothing to resume")
     start = read_file(out / "start.g4")
@@ -145,11 +150,11 @@ def _begun(
     left, gone = without(start, constructs, strike)
     for construct in gone:
         typer.echo(f"struck out: {construct.id} {construct.title}")
-    return Growth(start, in_force(start, left), left), struck
+    return InducedLedger(start, in_force(start, left), left), struck
 
 
-def _say(number: int, growth: "Growth") -> None:
-    last = growth.rounds[-1]
+def _say(number: int, ledger: "InducedLedger") -> None:
+    last = ledger.rounds[-1]
     typer.echo(
         f"round {number}: {_share(last['shown'])} of the files shown parse"
         + (f", {_share(last['held'])} of those held out" if last["held"]["files"] else "")
@@ -184,12 +189,11 @@ def _share(reading: dict[str, int]) -> str:
 
 
 def _write(
-    growth: "Growth",
+    ledger: "InducedLedger",
     record: dict[str, Any],
     out: Path,
     json_file: Path | None,
     struck: "Sequence[Sequence[Edit]]",
-    began: float,
 ) -> Path:
     """Write everything; return the path of the page."""
     from grammar.notation.edits import to_data
@@ -197,18 +201,15 @@ def _write(
     from reports.recovery.auto_page import write_auto_page
     from support.files.atomic_write import write_atomic
 
-    record["seconds"] = round(time.monotonic() - began, 1)
-    record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")
-    record["grammar_sha256"] = growth.grammar.sha256
     folder = out / "constructs"
-    wanted = {f"{construct.id}.toml": construct for construct in growth.constructs}
+    wanted = {f"{construct.id}.toml": construct for construct in ledger.constructs}
     for file in folder.glob("*.toml") if folder.is_dir() else ():
         if file.name not in wanted:
             file.unlink()
     for file_name, construct in wanted.items():
         write_atomic(folder / file_name, text_of(construct).encode())
-    write_atomic(out / "start.g4", growth.start.text.encode())
-    write_atomic(out / "grammar.g4", growth.grammar.text.encode())
+    write_atomic(out / "start.g4", ledger.start.text.encode())
+    write_atomic(out / "grammar.g4", ledger.grammar.text.encode())
     struck_data = [[to_data(edit) for edit in edits] for edits in struck]
     write_atomic(out / "struck.json", json.dumps(struck_data).encode())
     write_json(record, out / "auto.json")

@@ -27,7 +27,7 @@ from interp.testing.drivers import VALUES, Driver, DriverError, with_drivers
 from interp.values.faults import LinkError
 from interp.values.json_form import to_json
 from krl.errors import InputError, one_line
-from krl.program_tests.recording import compared, record, recording_of
+from krl.program_tests.recorded_runs import compared, record, recording_of
 from krl.program_tests.test_files import Expected, ProgramTest, TestFileError
 from krl.running.project_folders import project_root
 from krl.running.project_sources import read_sources

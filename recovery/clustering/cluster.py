@@ -71,7 +71,7 @@ class Cluster:
 
 @dataclass(frozen=True, slots=True)
 class Clusters:
-    """All clusters of a survey by rank, and the greedy order in which to repair them.
+    """All clusters of a survey by rank, and the mending order: the greedy one.
 
     ``order`` lists pairs of a cluster and the number of files that parse once it and all before it
     are repaired. ``numbers`` has the index in ``ranked`` of the cluster of each failure of a file,
@@ -251,7 +251,7 @@ def _assembled(
         for number, cause in enumerate(causes)
     ]
     parsed = _places(found.files) - _places(found.failing)
-    order = _greedy(parsed, needs, clusters)
+    order = _mending_order(parsed, needs, clusters)
     by_rank = sorted(
         range(len(clusters)),
         key=lambda n: (
@@ -403,15 +403,15 @@ def _distinct(texts: Sequence[str], rules: Sequence[str]) -> list[str]:
     return out
 
 
-def _greedy(
+def _mending_order(
     parsed: int,
     needs: Sequence[_Need],
     clusters: Sequence[Cluster],
 ) -> Iterator[tuple[Cluster, int]]:
-    """Yield the clusters in a greedy order, with the number of files that parse after each.
+    """Yield the clusters in mending order, with the number of files that parse after each.
 
-    ``parsed`` files parse before the first. The next cluster is the one that makes most files parse
-    or, on a tie, brings most files closest to it.
+    ``parsed`` files parse before the first. The order is greedy: next comes the cluster that makes
+    most files parse or, on a tie, brings most files closest to it.
     """
     waiting: Counter[frozenset[int]] = Counter()
     for need in needs:

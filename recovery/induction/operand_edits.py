@@ -30,7 +30,7 @@ class OperandEdits:
         yield from self._between_operands()
         yield from self._words_as_names()
         yield from self._words_as_types()
-        yield from self._operand_forms()
+        yield from self._brackets_as_operands()
 
     def _between_operands(self) -> Iterator[InferredStep]:
         """Words and signs between two operands or ahead of one, at each level there is."""
@@ -179,7 +179,7 @@ class OperandEdits:
                 if any(isinstance(e, Reference) and e.name in names for e in elements):
                     yield rule.name, place
 
-    def _operand_forms(self) -> Iterator[InferredStep]:
+    def _brackets_as_operands(self) -> Iterator[InferredStep]:
         """Return the contents of brackets that stand alone where an operand is possible."""
         found: dict[str, list[int]] = defaultdict(list)
         name = self.at.lexer.name_kind

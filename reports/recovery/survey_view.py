@@ -1,4 +1,6 @@
-"""The static parts of the survey page: headline, mending order, tables.
+"""The static parts of the survey page: headline, figures, origins, skipped files, copies.
+
+The clusters of a grammar are in `reports.recovery.survey_section`.
 
 All texts can be printed as they are: untrusted ones have passed through `printable`.
 """

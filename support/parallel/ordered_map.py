@@ -49,9 +49,9 @@ def ordered_map(
         for task in tasks:
             submitted.append((task, workers.submit(function, task)))
             if len(submitted) > workers.most_pending:
-                yield _next(function, submitted, workers, lost)
+                yield _result_or_retry(function, submitted, workers, lost)
         while submitted:
-            yield _next(function, submitted, workers, lost)
+            yield _result_or_retry(function, submitted, workers, lost)
 
 
 def in_shares(
@@ -87,7 +87,7 @@ def _workers(jobs: int, scheduler: str | None) -> Iterator[Workers]:
             yield local
 
 
-def _next(
+def _result_or_retry(
     function: Callable[[*_Ts], _T],
     submitted: deque[tuple[tuple[*_Ts], Pending[_T]]],
     workers: Workers,

@@ -2,6 +2,7 @@
 
 An ordinary pool gives a task to any free process. Here each process is a pool of its own, so
 objects such as syntax trees that one has loaded are still there for later tasks and never sent.
+A process that dies is not replaced: its tasks raise `concurrent.futures.BrokenExecutor`.
 """
 
 from __future__ import annotations

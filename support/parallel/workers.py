@@ -1,4 +1,4 @@
-"""Workers for tasks: processes of this machine or a Dask cluster."""
+"""The interface of workers, which processes of this machine and a Dask cluster implement."""
 
 from __future__ import annotations
 

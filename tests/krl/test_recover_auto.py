@@ -16,7 +16,7 @@ from grammar.parser.sentences import Sentences, Speller
 from krl.cli import main
 from recovery.induction import comparison
 from recovery.induction.comparison import compared, within_reach
-from recovery.induction.growth_record import without, without_some
+from recovery.induction.induced_ledger import without, without_some
 from recovery.language import KRL
 from recovery.ledger.ledger import Ledger, in_force
 

@@ -76,7 +76,7 @@ class Data:
         name = names.take(names.joined((choices.pick(names.vocabulary.stations), "state", "t")))
         found = Enumeration(name, tuple(constant.upper() for constant in constants))
         self.lines.append(
-            enumeration(found, is_global=self._is_global, comma=self._style.spelling.comma)
+            enumeration(found, is_global=self._is_global, comma=self._style.layout.comma)
         )
         return found
 
@@ -99,7 +99,7 @@ class Data:
         found = Structure(name, tuple(members))
         self.lines.append(
             structure_definition(
-                choices, found, is_global=self._is_global, comma=self._style.spelling.comma
+                choices, found, is_global=self._is_global, comma=self._style.layout.comma
             )
         )
         return Array(found, (choices.between(3, 20),)) if choices.chance(50) else found

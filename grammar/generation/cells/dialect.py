@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from grammar.generation.choices import Choices, Weighted
-from grammar.generation.code import Spelling
+from grammar.generation.layout import Layout
 
 
 class Generation(Enum):
@@ -33,7 +33,7 @@ class Letters(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Dialect(Spelling):
+class Dialect(Layout):
     """How the programs of a cell are written, and how its files are stored.
 
     ``language`` is the language of comments and names.

@@ -67,7 +67,7 @@ class Forms:
                 return f"{{A{choices.between(1, 6)} {choices.between(-20, 20)}.0}}"
             return _displacement(code)
         point = f"X{self.taught.point(again=0 if kind[0] in 'CS' else 15)}"
-        gap = code.spelling.gap
+        gap = code.layout.gap
         match choices.below(20):
             case 0 | 1 | 2 | 3:
                 return read(code, structure("E6POS")) or point

@@ -21,8 +21,8 @@ def _names(code: Code) -> Names:
 
 
 def _dialect(code: Code) -> Dialect:
-    assert isinstance(code.spelling, Dialect)
-    return code.spelling
+    assert isinstance(code.layout, Dialect)
+    return code.layout
 
 
 def set_output(code: Code) -> bool:
@@ -63,7 +63,7 @@ def ask(code: Code) -> bool:
     found = target(code, INT)
     if found is None:
         return False
-    asked = code.spelling.call("MsgAsk", (_names(code).message(), '"OK"', '"STOP"'))
+    asked = code.layout.call("MsgAsk", (_names(code).message(), '"OK"', '"STOP"'))
     return code.set(found, asked)
 
 
@@ -79,7 +79,7 @@ def remark(code: Code) -> bool:
     """Write a comment, an empty line, or a statement that is commented out."""
     match code.choices.below(10):
         case 0 | 1 | 2 | 3 | 4:
-            return code.line(f";{code.spelling.gap}{_names(code).remark()}")
+            return code.line(f";{code.layout.gap}{_names(code).remark()}")
         case 5 | 6 | 7:
             code.lines.append("")
             return True

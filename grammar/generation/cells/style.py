@@ -68,7 +68,7 @@ def _value(code: Code, place: str, type_: Type) -> str:
     """Return a value for a variable: often an increment, often a constant."""
     choices = code.choices
     if type_ == INT and choices.chance(30):
-        return code.spelling.binary(place, "+", "1")
+        return code.layout.binary(place, "+", "1")
     if type_ == BOOL and choices.chance(60):
         return constant(code, BOOL)
     return expression(code, type_, choices.between(1, 2))
@@ -181,7 +181,7 @@ def style_of(dialect: Dialect, names: Names, forms: Forms) -> Style:
 
     return Style(
         is_closed=False,
-        spelling=dialect,
+        layout=dialect,
         literals=_literals(dialect),
         expressions=_EXPRESSIONS,
         functions=_FUNCTIONS,

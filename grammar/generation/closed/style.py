@@ -15,7 +15,7 @@ from grammar.generation.closed.unstated_effects import (
     own_text,
 )
 from grammar.generation.closed.values import assigned_value
-from grammar.generation.code import Code, Spelling, StatementRule, Style
+from grammar.generation.code import Code, StatementRule, Style
 from grammar.generation.expressions import (
     atom,
     chain,
@@ -28,6 +28,7 @@ from grammar.generation.expressions import (
     pose,
 )
 from grammar.generation.functions import CONTROLLER_VALUES
+from grammar.generation.layout import Layout
 from grammar.generation.literals import AXIS_TYPES, POSES, TEXT, Literals, predefined
 from grammar.generation.patterns import line, patterns
 from grammar.generation.scope import Parameter
@@ -134,7 +135,7 @@ def _course(code: Code) -> bool:
 
     Most rules about motions only apply to such a sequence.
     """
-    choices, eq = code.choices, code.spelling.eq
+    choices, eq = code.choices, code.layout.eq
     code.spend(4)
     for name in ("TOOL", "BASE"):
         code.line(f"${name}{eq}$NULLFRAME")
@@ -167,7 +168,7 @@ _SETTINGS: Final = (
 
 CLOSED: Final = Style(
     is_closed=True,
-    spelling=Spelling(),
+    layout=Layout(),
     literals=_LITERALS,
     expressions={
         INT: patterns(

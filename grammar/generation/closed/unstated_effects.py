@@ -45,12 +45,12 @@ def order_of_evaluation(code: Code) -> bool:
     ]
     if changing:
         code.spend(changing[0].cost)
-        parts += [code.spelling.call(changing[0].name, [place]), place]
+        parts += [code.layout.call(changing[0].name, [place]), place]
     drawn = [choices.pick(parts) for _ in range(choices.between(2, 3))]
     code.spend()
     match choices.below(3):
         case 0:
-            return code.set(place, code.spelling.gap.join("+" + one for one in drawn)[1:])
+            return code.set(place, code.layout.gap.join("+" + one for one in drawn)[1:])
         case 1:
             return code.set(place, f"STRFIND({drawn[0]}, {text}, {text}, #CASE_SENS)-{drawn[1]}")
     row = read(code, INT)

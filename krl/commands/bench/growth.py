@@ -30,7 +30,7 @@ from krl.terminal.text_table import figures
 from support.files.untrusted import json_of, read_text
 
 if TYPE_CHECKING:
-    from support.measure.growth import Growth
+    from support.measure.cost_by_size import Growth
 
 _AIM: Final = 1.15
 _SMALLEST: Final = 8_000
@@ -296,7 +296,7 @@ class _Unmade(Exception):
 
 def _measure(entry: str, shape: str, largest: int) -> Growth | None:
     from krl.commands.app import app
-    from support.measure.growth import measure_growth
+    from support.measure.cost_by_size import measure_growth
 
     chosen = _ENTRIES[entry]
     with tempfile.TemporaryDirectory() as place, Path(os.devnull).open("w") as nowhere:

@@ -26,7 +26,7 @@ from grammar.parser.recognizer import Recognizer
 from recovery.induction import folding, list_lengths, rounds
 from recovery.induction.corpus_lines import held_out
 from recovery.induction.grammar_view import GrammarView
-from recovery.induction.growth_record import Growth, without
+from recovery.induction.induced_ledger import InducedLedger, without
 from recovery.induction.names_rule import with_names
 from recovery.induction.objections import EditReview
 from recovery.induction.rounds import Induction
@@ -38,8 +38,8 @@ from recovery.negatives.negatives import Negative, NegativeSet
 
 def _grown(
     start: Grammar, files: tuple[CorpusFile, ...], negatives: tuple[Negative, ...] = ()
-) -> Growth:
-    growth = Growth(start, start)
+) -> InducedLedger:
+    growth = InducedLedger(start, start)
     induction = Induction(start, files, (), NegativeSet(negatives))
     for done in induction.rounds():
         growth.add(done)
@@ -47,12 +47,12 @@ def _grown(
 
 
 @pytest.fixture(scope="module")
-def growth(toy: Grammar, toy_files: tuple[CorpusFile, ...]) -> Growth:
+def growth(toy: Grammar, toy_files: tuple[CorpusFile, ...]) -> InducedLedger:
     """The growth over all programs."""
     return _grown(toy, toy_files)
 
 
-def test_every_program_is_read(growth: Growth, toy_files: tuple[CorpusFile, ...]) -> None:
+def test_every_program_is_read(growth: InducedLedger, toy_files: tuple[CorpusFile, ...]) -> None:
     """Statements, blocks and operators that several origins show are found."""
     recognizer = Recognizer(growth.grammar)
     assert [] == [file.path for file in toy_files if not recognizer.accepts(file.text)]
@@ -92,7 +92,7 @@ def test_a_word_is_a_name_where_lines_are_read_then(toy: Grammar, line: str, cou
         ("SLOW A\n", False),
     ],
 )
-def test_unseen_lines(growth: Growth, text: str, accepted: bool) -> None:
+def test_unseen_lines(growth: InducedLedger, text: str, accepted: bool) -> None:
     """Forms hold for lines that were not looked at, blocks have to be closed, words are words."""
     assert accepted == Recognizer(growth.grammar).accepts(text)
 
@@ -398,19 +398,19 @@ def test_a_start_that_is_a_loop_of_lines_grows(
     assert [] == [file.path for file in files if not recognizer.accepts(file.text)]
 
 
-def test_the_ledger_replays(growth: Growth) -> None:
+def test_the_ledger_replays(growth: InducedLedger) -> None:
     """The constructs, replayed on the start, give the grammar byte for byte."""
     assert growth.grammar.text == in_force(growth.start, growth.constructs).text
 
 
-def test_no_line_is_lost(growth: Growth) -> None:
+def test_no_line_is_lost(growth: InducedLedger) -> None:
     """From round to round no more lines fail."""
     failing = [done["shown"]["failing"] for done in growth.rounds]
     assert sorted(failing, reverse=True) == failing
 
 
 def test_the_same_every_time(
-    growth: Growth, toy: Grammar, toy_files: tuple[CorpusFile, ...]
+    growth: InducedLedger, toy: Grammar, toy_files: tuple[CorpusFile, ...]
 ) -> None:
     """The same files give the same grammar."""
     assert growth.grammar.text == _grown(toy, toy_files).grammar.text
@@ -455,7 +455,7 @@ def test_folds_that_undo_each_other_end(toy: Grammar, monkeypatch: pytest.Monkey
     assert (1, True) == (len(taken), induction.is_finished)
 
 
-def test_a_step_is_struck_out(growth: Growth) -> None:
+def test_a_step_is_struck_out(growth: InducedLedger) -> None:
     """A step that is struck out goes, with those that need it; the others stay in order."""
     block = next(c for c in growth.constructs if "REPEATN" in c.title)
     left, gone = without(growth.start, growth.constructs, [block.id])
@@ -465,7 +465,7 @@ def test_a_step_is_struck_out(growth: Growth) -> None:
 
 
 def test_what_is_struck_is_not_taken_again(
-    growth: Growth, toy: Grammar, toy_files: tuple[CorpusFile, ...]
+    growth: InducedLedger, toy: Grammar, toy_files: tuple[CorpusFile, ...]
 ) -> None:
     """Edits that were struck out are not tried again."""
     struck = [construct.edits for construct in growth.constructs]
@@ -523,7 +523,7 @@ def test_a_limit_of_rounds_is_no_end(toy: Grammar, toy_files: tuple[CorpusFile, 
     assert [False, True] == ends
 
 
-def test_a_step_that_mends_nothing_is_refused(growth: Growth) -> None:
+def test_a_step_that_mends_nothing_is_refused(growth: InducedLedger) -> None:
     """A round that takes steps for lines that fail leaves fewer of them or more files read."""
     standing = [(d["shown"]["parsed"], -d["shown"]["failing"]) for d in growth.rounds]
     idle = [

@@ -1,6 +1,6 @@
-"""The result of an automatic recovery, as a ledger and as a record.
+"""The ledger of an automatic recovery: its constructs in order, and its rounds as data.
 
-The ledger is a folder of constructs like that of the project's grammar (`recovery.ledger.ledger`),
+On disk it is a folder of constructs like that of the project's grammar (`recovery.ledger.ledger`),
 so the same commands read, show and replay it.
 """
 
@@ -25,7 +25,7 @@ _LONGEST_EDIT = 1_000
 
 
 @dataclass(slots=True)
-class Growth:
+class InducedLedger:
     """The steps so far: constructs in order, the resulting grammar, and the rounds as data."""
 
     start: Grammar

@@ -2,7 +2,7 @@
 
 import pytest
 
-from support.measure.growth import Cost, Growth
+from support.measure.cost_by_size import Cost, Growth
 
 
 def _growth(*seconds: float, peaks: tuple[int, ...] = (1, 1, 1)) -> Growth:

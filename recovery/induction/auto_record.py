@@ -1,0 +1,49 @@
+"""The record of an automatic recovery: what `krl recover --auto` writes as ``auto.json``.
+
+docs/automatic-recovery.md describes its fields; others read them, so fields are added and never
+changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from importlib import metadata
+from typing import Any
+
+from recovery.induction.induced_ledger import InducedLedger
+from recovery.ledger.construct import Construct
+
+
+def record_of(
+    ledger: InducedLedger,
+    *,
+    start: str,
+    taken_out: Sequence[Construct],
+    held_out: Sequence[str],
+    seed: int,
+    seconds: float,
+    is_finished: bool,
+    target: Mapping[str, Any] | None,
+) -> dict[str, Any]:
+    """Return the record of the rounds so far.
+
+    ``start`` is the name of the grammar at the start, ``taken_out`` are the constructs that it
+    lacks, ``held_out`` the origins that were not shown. ``target`` compares the result with another
+    grammar (`recovery.induction.comparison`).
+    """
+    record: dict[str, Any] = {
+        "start": start,
+        "start_sha256": ledger.start.sha256,
+        "without": [construct.id for construct in taken_out],
+        "held_out": list(held_out),
+        "seed": seed,
+        "rounds": ledger.rounds,
+        "finished": is_finished,
+        "version": metadata.version("krl-workbench"),
+        "rules": sum(not rule.is_lexer for rule in ledger.grammar.rules),
+        "seconds": round(seconds, 1),
+        "generated": datetime.now(UTC).isoformat(timespec="seconds"),
+        "grammar_sha256": ledger.grammar.sha256,
+    }
+    return record if target is None else {**record, "target": target}
