@@ -32,9 +32,9 @@ from conformance.evaluation.path_geometry import (
 )
 from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.chain import Chain
+from interp.robot.kinematics.kinematics import matrix_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import IpoMode
-from interp.robot.kinematics.solver import matrix_of
 from interp.robot.simulation.tracking import PathRecord
 from interp.values.poses import Pose
 

@@ -19,8 +19,8 @@ from conformance.evaluation.path_geometry import between
 from conformance.evaluation.run_laws import Violation
 from interp.robot.arm import Motion
 from interp.robot.kinematics.chain import Chain
+from interp.robot.kinematics.kinematics import matrix_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
-from interp.robot.kinematics.solver import matrix_of
 from interp.robot.simulation.tracking import PathRecord
 
 Array = npt.NDArray[np.float64]

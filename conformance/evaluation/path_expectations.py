@@ -33,7 +33,7 @@ from conformance.evaluation.path_geometry import (
 )
 from conformance.evaluation.trace_expectations import Evaluated, Marks, time_of
 from conformance.suite.expectations import Expectation
-from interp.robot.kinematics.solver import matrix_of
+from interp.robot.kinematics.kinematics import matrix_of
 from interp.robot.simulation.tracking import PathRecord
 from interp.values.poses import Pose
 

@@ -20,9 +20,9 @@ from conformance.evaluation.motions import NEAR_DEGREES, Array, EndedMotion
 from conformance.evaluation.path_geometry import TOLERANCE_DEGREES, TOLERANCE_MM, circle_of, drawn
 from conformance.evaluation.run_laws import Violation
 from interp.robot.arm import SplinePart, Target
+from interp.robot.kinematics.kinematics import matrix_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.placement import IpoMode
-from interp.robot.kinematics.solver import matrix_of
 from interp.values.poses import Pose
 
 _LAW: Final = "a spline block has the shape that docs/motion.md describes"

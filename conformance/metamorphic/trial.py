@@ -8,7 +8,7 @@ from functools import lru_cache
 from random import Random
 from typing import Any, Final
 
-from conformance.metamorphic import control_flow_laws, motion_laws, source_text_laws
+from conformance.metamorphic import control_flow_changes, motion_changes, source_text_changes
 from conformance.metamorphic.law import Attempt, Law, run_law
 from conformance.metamorphic.motion_programs import moving_program
 from conformance.metamorphic.subject import Program
@@ -17,7 +17,7 @@ from grammar.generation.closed.programs import seeded
 from support.parallel.ordered_map import ordered_map
 
 #: All laws.
-LAWS: Final = (*source_text_laws.LAWS, *control_flow_laws.LAWS, *motion_laws.LAWS)
+LAWS: Final = (*source_text_changes.LAWS, *control_flow_changes.LAWS, *motion_changes.LAWS)
 #: How many generated programs are examined for each one to which a law must apply.
 _LOOKED_AT: Final = 6
 

@@ -16,14 +16,14 @@ from typing import Any, Final
 from unittest.mock import patch
 
 from interp.controller.motion.advance_run import AdvanceRun
+from interp.controller.motion.motion_builder import MotionBuilder
 from interp.controller.motion.motion_queue import MotionQueue
-from interp.controller.motion.motions import MotionBuilder
 from interp.controller.requests.waits import Waits
 from interp.controller.state.interrupts import Interrupts
 from interp.controller.state.signals import Signals
 from interp.robot.kinematics.placement import Placement
-from interp.robot.path import targets_in_force
-from interp.robot.path.targets_in_force import Programmed
+from interp.robot.path import programmed_targets
+from interp.robot.path.programmed_targets import Programmed
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.planning.timeline import Timeline
 
@@ -219,7 +219,7 @@ FAULTS: Final = (
     Fault(
         "targets",
         "the Status of a target counts nothing",
-        targets_in_force,
+        programmed_targets,
         "ptp_target",
         _without_status,
     ),

@@ -255,7 +255,11 @@ class Arm(Protocol):
         ...
 
     def proceed(self, now: int) -> None:
-        """Continue the motion that a brake interrupted."""
+        """Continue the motion that a brake interrupted, from where the arm left its path.
+
+        Raises `ValueError` if the arm is elsewhere. The controller moves it back before
+        (`interp.controller.interrupts.levels`).
+        """
         ...
 
     def discard(self, now: int) -> None:

@@ -74,9 +74,11 @@ def with_drivers(
             counter = f"KRL_CALLS_{len(counters) + 1}" if len(bodies) > 1 else ""
             counters += [f"DECL GLOBAL INT {counter}=0"] if counter else [""]
             own = f"KRL_STANDIN_{len(counters)}"
-            edits.append((path, *_shim(routine, own), _stand_in(routine, own, bodies, counter)))
-    for path, start, end, shim, stand_in in sorted(edits, key=lambda edit: -edit[1]):
-        texts[path] = texts[path][:start] + shim + texts[path][end:] + stand_in
+            edits.append(
+                (path, *_replaced_body(routine, own), _stand_in(routine, own, bodies, counter))
+            )
+    for path, start, end, body, stand_in in sorted(edits, key=lambda edit: -edit[1]):
+        texts[path] = texts[path][:start] + body + texts[path][end:] + stand_in
     if any(counters):
         lines = [f"DEFDAT {_DATA} PUBLIC", *filter(None, counters), "ENDDAT", ""]
         texts[str(folder / f"{_DATA}.dat")] = "\n".join(lines)
@@ -134,7 +136,7 @@ def _text(routine: Routine, node: ast.Node) -> str:
     return routine.unit.source.text[slice(*node.span)]
 
 
-def _shim(routine: Routine, own: str) -> tuple[int, int, str]:
+def _replaced_body(routine: Routine, own: str) -> tuple[int, int, str]:
     """Return the span of the statements of a routine, and the call that replaces them.
 
     The replacement has as many lines, so that all following lines keep their numbers.

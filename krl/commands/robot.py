@@ -14,7 +14,7 @@ from krl.extras import expected_extras
 from krl.running.robot_options import read_machine_file
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.solver import Kinematics
+    from interp.robot.kinematics.kinematics import Kinematics
     from interp.values.poses import Pose
 
 app = typer.Typer(help="Ask what an arm does, by its machine data.")
@@ -88,7 +88,7 @@ def _arm(path: Path) -> "Kinematics":
 
 def _answer(arm: "Kinematics", point: _Point, tool: "Pose", base: "Pose") -> dict[str, object]:
     from interp.robot.kinematics.placement import Placement
-    from interp.robot.kinematics.targets import solve
+    from interp.robot.kinematics.solution_choice import solve
     from interp.values.faults import Fault
 
     placement = Placement(point.base or base, point.tool or tool, arm.machine.foot((0.0,) * 6))

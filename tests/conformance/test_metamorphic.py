@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from conformance.metamorphic import LAWS, Law, motion_laws, record_of, run_law, try_laws
+from conformance.metamorphic import LAWS, Law, motion_changes, record_of, run_law, try_laws
 from conformance.metamorphic.comparison import (
     Compare,
     at_most_twice,
@@ -168,7 +168,7 @@ def test_a_base_shifted_without_its_points_is_caught() -> None:
     """The law about frames fails when the points stay."""
 
     def change(program: Program, random: Random) -> Program | None:
-        found = motion_laws._shifted(program, random)
+        found = motion_changes._shifted(program, random)
         assert found is not None
         back = {f"{n - 24:.4f}": f"{n:.4f}" for n in (500, 560, 480)}
         text = found.case.sources[0].text

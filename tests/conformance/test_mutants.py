@@ -220,7 +220,7 @@ def test_cases_that_run_what_a_statement_names_come_first() -> None:
     """Of three cases that run a call only the last runs what the called function then does."""
     plan = "interp.robot.planning.planned_arm"
     mutant = _mutant(plan, "PlannedArm.plan", "check_numbers(motion)", "pass")
-    called = "interp.robot.path.targets_in_force"
+    called = "interp.robot.path.programmed_targets"
     rare = max(around(mutant)[called])
     lines = {plan: frozenset({mutant.line})}
     reaches = [Reach(_case(f"motion/{name}"), lines, 1) for name in ("acc_cp", "lin_speed")]

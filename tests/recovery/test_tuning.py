@@ -18,7 +18,8 @@ HEURISTIC = [
         path
         for folder in ("proposals", "clustering", "reproducer", "induction")
         for path in sorted((FOLDER / folder).rglob("*.py"))
-        if path.stem not in ("auto_record", "comparison", "induced_ledger")  # what is told, not what is found
+        if path.stem
+        not in ("auto_record", "comparison", "induced_ledger")  # what is told, not what is found
     ),
 ]
 BASES = re.compile(r"\b(?:bound|revised: \d|not measured|measured: |looks through)", re.IGNORECASE)

@@ -1,4 +1,4 @@
-"""Interrupts and actions of triggers: when they are entered, and what they may do [INT-01 ff.].
+"""Interrupts and actions of triggers: when they are entered, BRAKE and RESUME [INT-01 ff.].
 
 Their routines may do everything that other routines do [INT-16], except what is rejected here.
 """

@@ -1,5 +1,7 @@
 """Levels on top of a program: interrupt routines, actions of triggers, cyclic signals.
 
+After a routine that has used BRAKE, the arm moves back to its path and continues there.
+
 A level is entered while a request of the executor is unanswered, and only the top level runs. When
 it ends, the request below is made again, and the program continues to wait for what it waited for.
 """

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
 
 from grammar.motion_kinds import AXIS_MOTIONS, SPLINE_MOTIONS, WITHOUT_PATH
-from interp.controller.motion.motions import MotionBuilder, PlannedMotion
+from interp.controller.motion.motion_builder import MotionBuilder, PlannedMotion
 from interp.controller.motion.output_switch import OutputSwitch
 from interp.controller.motion.positions import FramesInForce, Positions
 from interp.controller.state.messages import message_fault, own_fault

@@ -33,7 +33,7 @@ from interp.values.poses import IDENTITY, Pose
 from interp.values.values import EnumValue, StructureValue, single
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.solver import Kinematics
+    from interp.robot.kinematics.kinematics import Kinematics
     from interp.robot.simulation.tracking import Tracking
 
 #: Degrees or mm by which an axis may miss a home position in addition to its tolerance.
@@ -192,7 +192,7 @@ class Positions:
 
     def status_turn(self, axes: Sequence[float]) -> tuple[int, int]:
         """Return Status and Turn of axes in degrees; Status is 0 if there is no machine data."""
-        from interp.robot.kinematics.targets import turn_of
+        from interp.robot.kinematics.solution_choice import turn_of
 
         robot = axes[:ROBOT_AXES]
         status = 0 if self._kinematics is None else int(self._kinematics.status(robot))

@@ -14,7 +14,7 @@ from grammar.semantics.types import INT, UNKNOWN
 from interp.controller.inputs.channels import Channels, Waiting
 from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.arm_control import ArmControl
-from interp.controller.motion.motions import target_of
+from interp.controller.motion.motion_builder import target_of
 from interp.controller.motion.positions import (
     FramesInForce,
     axes_value,
@@ -46,7 +46,7 @@ from interp.values.values import (
 )
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.solver import Kinematics
+    from interp.robot.kinematics.kinematics import Kinematics
 
 #: Arrays whose size is in the profile.
 _SIZES: Final = {
@@ -245,7 +245,7 @@ class PredefinedRoutines:
 
     def _forward(self, _task: Task, request: Invoke) -> Outcome:
         """FORWARD: return the pose of axes, in base and tool of the advance run [FCT-03]."""
-        from interp.robot.kinematics.targets import turn_of
+        from interp.robot.kinematics.solution_choice import turn_of
 
         target = target_of(known(request.arguments[0]))
         axes = _components(target, AXIS_NAMES)
@@ -258,7 +258,7 @@ class PredefinedRoutines:
 
     def _inverse(self, _task: Task, request: Invoke) -> Outcome:
         """INVERSE: return the axes of a pose; the status is 1 if it cannot be reached [FCT-03]."""
-        from interp.robot.kinematics.targets import solve
+        from interp.robot.kinematics.solution_choice import solve
 
         target = target_of(known(request.arguments[0]))
         start = target_of(known(request.arguments[1]))

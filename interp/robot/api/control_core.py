@@ -163,7 +163,7 @@ class ControlCore:
         self.arm.brake(now, is_hard)
 
     def proceed(self, now: int) -> None:
-        """Continue after a brake, unless the brake is to end the motions."""
+        """Continue after a brake, unless the brake is to end the motions; see `Arm.proceed`."""
         self._advance(now)
         if not self._is_ending:
             self.arm.proceed(now)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from interp.robot.kinematics.machine_data import MachineData, MachineDataError, Palletising
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.solver import Kinematics
+    from interp.robot.kinematics.kinematics import Kinematics
 
 _FAR = 1e9  # mm
 

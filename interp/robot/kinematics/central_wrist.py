@@ -5,7 +5,7 @@ kinematics separates position and orientation (Pieper): the wrist centre determi
 the law of cosines, and the remaining rotation determines the wrist axes as Euler angles.
 
 Inside this module, the *upright arm* is the same arm with the senses and zero positions of its axes
-removed. Arrays are those of `interp.robot.kinematics.solver`.
+removed. Arrays are those of `interp.robot.kinematics.kinematics`.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from interp.robot.kinematics.kinematics import Array, continued, matrix_of, nearest_turns
 from interp.robot.kinematics.machine_data import MachineData, MachineDataError
-from interp.robot.kinematics.solver import Array, continued, matrix_of, nearest_turns
 from interp.values.poses import sine_cosine
 
 _SHOULDER = np.array([1.0, 1.0, -1.0, -1.0])  # wrist centre in front of axis 1, or behind it
@@ -38,7 +38,7 @@ _TOLERANCE = 1e-9  # degrees
 
 
 class CentralWrist:
-    """The kinematics of one machine, as a `interp.robot.kinematics.solver.Kinematics`.
+    """The kinematics of one machine, as a `interp.robot.kinematics.kinematics.Kinematics`.
 
     Raises `MachineDataError` for a wrist that is not central, and for impossible lengths.
     """

@@ -17,8 +17,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from interp.robot.kinematics.kinematics import Array, matrix_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
-from interp.robot.kinematics.solver import Array, matrix_of
 from interp.values.faults import Fault
 
 _STARTS = 96
@@ -39,7 +39,7 @@ _FAR = 1e9  # mm
 
 
 class NumericKinematics:
-    """The kinematics of one machine, as a `interp.robot.kinematics.solver.Kinematics`.
+    """The kinematics of one machine, as a `interp.robot.kinematics.kinematics.Kinematics`.
 
     Raises `MachineDataError` for a chain without joints, or with more than six.
     """
@@ -81,7 +81,7 @@ class NumericKinematics:
         return poses
 
     def forward(self, axes: npt.ArrayLike) -> Array:
-        """See `interp.robot.kinematics.solver.Kinematics.forward`."""
+        """See `interp.robot.kinematics.kinematics.Kinematics.forward`."""
         given = self.coupled(axes)
         pose, _ = self._poses(given[..., : self._count] * self._units)
         return pose
@@ -101,7 +101,7 @@ class NumericKinematics:
         return found.reshape(*shape, _MOST_SOLUTIONS, ROBOT_AXES)
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
-        """See `interp.robot.kinematics.solver.Kinematics.inverse_near`."""
+        """See `interp.robot.kinematics.kinematics.Kinematics.inverse_near`."""
         starts = self._held(references[:, : self._count]) * self._units
         found = self._degrees(self._solve(poses, starts, _NEAR_ROUNDS))
         lost = (np.abs(found - self.coupled(references)) > _NEAR).any(axis=1)
@@ -109,7 +109,7 @@ class NumericKinematics:
         return found
 
     def inverse_along(self, poses: Array, start: Sequence[float]) -> Array:
-        """See `interp.robot.kinematics.solver.Kinematics.inverse_along`.
+        """See `interp.robot.kinematics.kinematics.Kinematics.inverse_along`.
 
         It solves a few samples one after the other, then all samples between them at once.
         """
@@ -126,7 +126,7 @@ class NumericKinematics:
         return path
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
-        """See `interp.robot.kinematics.solver.Kinematics.status`."""
+        """See `interp.robot.kinematics.kinematics.Kinematics.status`."""
         given = self.coupled(axes)
         behind = self._wrist(given)[..., 0] < -1e-7
         bent = given[..., 2] >= self.elbow - _TURN
@@ -134,7 +134,7 @@ class NumericKinematics:
         return found
 
     def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
-        """See `interp.robot.kinematics.solver.Kinematics.distance_to_axis_1`."""
+        """See `interp.robot.kinematics.kinematics.Kinematics.distance_to_axis_1`."""
         distance: Array = np.hypot(*np.moveaxis(self._wrist(self.coupled(axes)), -1, 0)[:2])
         return distance if not self._linear[0] else np.full_like(distance, math.inf)
 

@@ -16,8 +16,8 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.kinematics.central_wrist import CentralWrist
+from interp.robot.kinematics.kinematics import Array, continued, matrix_of, nearest_turns
 from interp.robot.kinematics.machine_data import MachineDataError, Palletising
-from interp.robot.kinematics.solver import Array, continued, matrix_of, nearest_turns
 
 _SOLUTIONS = 4
 _TOLERANCE = 1e-9  # mm, or of a cosine
@@ -28,7 +28,7 @@ _BESIDE = 1e-6  # mm by which the tip may be missed
 
 
 class Palletiser:
-    """The kinematics of a palletiser, as a `interp.robot.kinematics.solver.Kinematics`.
+    """The kinematics of a palletiser, as a `interp.robot.kinematics.kinematics.Kinematics`.
 
     ``arm`` is the kinematics of the same machine with all axes free. Raises `MachineDataError` if
     the wrist or flange is not in the plane of the arm.
@@ -73,7 +73,7 @@ class Palletiser:
         return found
 
     def about_tips(self, poses: Array, tool: Array, /) -> Array:
-        """See `interp.robot.kinematics.solver.Kinematics.about_tips`.
+        """See `interp.robot.kinematics.kinematics.Kinematics.about_tips`.
 
         The plane of the flange depends on its position, and the position on its orientation, so the
         solution is a fixed-point iteration. NaN if it does not converge, above axis 1.
@@ -94,7 +94,7 @@ class Palletiser:
         return reached
 
     def forward(self, axes: npt.ArrayLike) -> Array:
-        """See `interp.robot.kinematics.solver.Kinematics.forward`."""
+        """See `interp.robot.kinematics.kinematics.Kinematics.forward`."""
         return self._arm.forward(self.coupled(axes))
 
     def inverse(self, poses: npt.ArrayLike) -> Array:
@@ -104,24 +104,24 @@ class Palletiser:
         return self._with_wrist(main, reached[..., None, :, :])
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
-        """See `interp.robot.kinematics.solver.Kinematics.inverse_near`."""
+        """See `interp.robot.kinematics.kinematics.Kinematics.inverse_near`."""
         reached = self._reachable(poses)
         main = self._arm.inverse_near(reached, references)[:, :3]
         found = self._with_wrist(main, reached)
         return nearest_turns(found, references)
 
     def inverse_along(self, poses: Array, start: Sequence[float]) -> Array | None:
-        """See `interp.robot.kinematics.solver.Kinematics.inverse_along`."""
+        """See `interp.robot.kinematics.kinematics.Kinematics.inverse_along`."""
         references = np.array(start, dtype=np.float64)
         found = self.inverse_near(poses, np.tile(references, (len(poses), 1)))
         return continued(references, found)
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
-        """See `interp.robot.kinematics.solver.Kinematics.status`."""
+        """See `interp.robot.kinematics.kinematics.Kinematics.status`."""
         return self._arm.status(self.coupled(axes))
 
     def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
-        """See `interp.robot.kinematics.solver.Kinematics.distance_to_axis_1`."""
+        """See `interp.robot.kinematics.kinematics.Kinematics.distance_to_axis_1`."""
         return self._arm.distance_to_axis_1(axes)
 
     # ------------------------------------------------------------------------------- the geometry

@@ -18,7 +18,7 @@ from interp.robot.kinematics.carrier import Carrier
 from interp.values.poses import IDENTITY, Pose
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.solver import Array
+    from interp.robot.kinematics.kinematics import Array
 
 
 class IpoMode(Enum):
@@ -94,7 +94,7 @@ class Placement:
 
 
 def _poses(fixed: Pose, carrier: Carrier | None, externals: Array) -> Array:
-    from interp.robot.kinematics.solver import matrix_of
+    from interp.robot.kinematics.kinematics import matrix_of
 
     if carrier is None:
         return matrix_of(fixed)

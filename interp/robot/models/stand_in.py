@@ -39,7 +39,7 @@ from interp.robot.models import default_machine
 from interp.values.poses import IDENTITY, Pose
 
 if TYPE_CHECKING:
-    from interp.robot.kinematics.solver import Array, Kinematics
+    from interp.robot.kinematics.kinematics import Array, Kinematics
 
 _NUMBER: Final = r"\s*([-+]?(?:\d+(?:\.\d+)?|\.\d+)(?:E[-+]?\d+)?)\b"
 _POSE: Final = re.compile(rf"\{{[^{{}}]*?\bX{_NUMBER}\s*,\s*Y{_NUMBER}\s*,\s*Z{_NUMBER}", re.I)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 
 #: Nodes and weights of Gauss-Legendre quadrature on [0, 1], exact for polynomials of degree 9.
 _NODES, _WEIGHTS = np.stack(np.polynomial.legendre.leggauss(5)) / 2.0 + [[0.5], [0.0]]

@@ -10,16 +10,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from interp.robot.kinematics.machine_data import ROBOT_AXES
+from interp.robot.kinematics.kinematics import Array, Kinematics, matrix_of
 from interp.robot.kinematics.placement import IpoMode, Placement
-from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
-from interp.robot.kinematics.targets import check_path, follow
-from interp.robot.path.arc_length import ArcLength
+from interp.robot.kinematics.solution_choice import check_path, follow
 from interp.robot.path.pose_path import PosePath, poses_of
 from interp.robot.path.transition import Transition, chained
 from interp.robot.path.uniform_spline import UniformSpline
@@ -40,7 +38,6 @@ points, rounding would dominate the differences."""
 _MOST = 8193
 _SMOOTH = 0.004
 """Largest fourth difference of points in degrees; a cubic spline errs by 5/384 of it at most."""
-_NEAR = 1e-4  # of u: half the width of a central difference
 _ROUGH = 0.05  # degrees of fourth difference at which, with most points, an axis jumps
 
 
@@ -370,37 +367,6 @@ def _blended_rates(blend: BlendedAxes | BlendedExternals, u: Array) -> Rates:
     joining = chained(blend.second.rates(parameters[1]), rates[1][:, :, None])
     first, second, third = (one + other for one, other in zip(leaving, joining, strict=True))
     return first, second, third
-
-
-def tool_positions(curve: Curve, u: Array) -> Array:
-    """Return the tool relative to the base in mm, ``(n, 3)``; for a fixed tool, the reverse."""
-    if curve.pose_path is not None:
-        return curve.pose_path.at(u)[0]
-    axes = curve.axes(u)
-    flanges = curve.arm.forward(axes[:, :ROBOT_AXES])
-    placement = curve.placement
-    base = placement.chains_before(axes[:, ROBOT_AXES:])
-    tool = flanges @ matrix_of(placement.tool)
-    if placement.mode is IpoMode.TCP:
-        base, tool = tool, base
-    positions: Array = (np.linalg.inv(base) @ tool)[:, :3, 3]
-    return positions
-
-
-def tool_tangents(curve: Curve, u: Array) -> Array:
-    """Return the derivatives of the tool positions by u in mm, ``(n, 3)``."""
-    if curve.pose_path is not None:
-        return curve.pose_path.tangents(u)
-    middle = np.clip(u, _NEAR, 1.0 - _NEAR)
-    both = tool_positions(curve, np.concatenate((middle - _NEAR, middle + _NEAR)))
-    tangents: Array = (both[len(u) :] - both[: len(u)]) / (2.0 * _NEAR)
-    return tangents
-
-
-@lru_cache(maxsize=32)
-def tool_way(curve: Curve) -> ArcLength:
-    """Return the distance in mm that the tool travels along a curve from u = 0 on."""
-    return ArcLength(lambda u: tool_tangents(curve, u))
 
 
 def _singular() -> Fault:

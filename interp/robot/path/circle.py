@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 from interp.values.faults import Fault
 
 _SAME = 1e-6  # mm below which two points are the same

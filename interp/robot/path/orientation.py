@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 
 _PARALLEL = 1e-12
 _MANY = 3  # dimensions of a stack of matrices

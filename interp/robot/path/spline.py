@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation, turning

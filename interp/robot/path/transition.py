@@ -17,7 +17,7 @@ from typing import Protocol
 
 import numpy as np
 
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.arc_length import ArcLength
 
 _ROUNDS = 60

@@ -11,7 +11,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 
 _MAPPED = 129
 """The number of points above which the matrix would need too much memory."""

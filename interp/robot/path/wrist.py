@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from interp.robot.kinematics.kinematics import Array, Kinematics
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Array, Kinematics
-from interp.robot.kinematics.targets import ptp_target
+from interp.robot.kinematics.solution_choice import ptp_target
 from interp.robot.path.axis_path import ExternalAxes, PosePathCurve
 from interp.robot.path.pose_path import PosePath, poses_of
 from interp.values.faults import Fault

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from interp.robot.arm import Load
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, MachineData
-from interp.robot.kinematics.solver import Array
 from interp.robot.planning.torque_limits import TorqueLimits
 
 _ROTARY, _LINEAR = Dynamics.ramped(180.0), Dynamics.ramped(1000.0)

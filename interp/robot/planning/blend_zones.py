@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from interp.robot.arm import Approximation, Motion
-from interp.robot.path.axis_path import Curve, tool_way
+from interp.robot.path.axis_path import Curve
+from interp.robot.path.tool_path import tool_way
 from interp.robot.planning.ramps import ramp
 from interp.robot.planning.tracks import Piece, Track
 

@@ -15,7 +15,7 @@ from functools import lru_cache
 import numpy as np
 
 from interp.robot.kinematics.machine_data import ROBOT_AXES
-from interp.robot.kinematics.targets import check_path
+from interp.robot.kinematics.solution_choice import check_path
 from interp.robot.path.axis_path import (
     BlendedAxes,
     BlendedExternals,

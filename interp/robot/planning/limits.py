@@ -17,7 +17,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.axis_path import Curve, Rates
 from interp.robot.planning.axis_limits import AxisLimits
 from interp.robot.planning.ramps import Bounds

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from interp.robot.arm import ArmEvent, EventKind, Place
-from interp.robot.path.axis_path import tool_way
+from interp.robot.path.tool_path import tool_way
 from interp.robot.planning.blend_zones import wants_blend
 from interp.robot.planning.plan import Passage, places_of
 from interp.robot.planning.timeline import APEX, MICROSECOND, Key, Section, Timeline, micros

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from interp.robot.arm import ArmEvent, Motion, Place, SplinePart
-from interp.robot.path.axis_path import tool_way
-from interp.robot.path.targets_in_force import Programmed
+from interp.robot.path.programmed_targets import Programmed
+from interp.robot.path.tool_path import tool_way
 from interp.robot.planning.blending import PlannedBlend
 from interp.robot.planning.straight_run import StraightRun
 from interp.robot.planning.timeline import APEX, Key, Section

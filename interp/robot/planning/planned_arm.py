@@ -15,10 +15,10 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.arm import ArmEvent, Motion, Position, Samples
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
-from interp.robot.kinematics.solver import Array
-from interp.robot.kinematics.targets import check_limits
-from interp.robot.path.targets_in_force import Programmed, check_numbers
+from interp.robot.kinematics.solution_choice import check_limits
+from interp.robot.path.programmed_targets import Programmed, check_numbers
 from interp.robot.planning.blend_zones import zone_of
 from interp.robot.planning.blending import blend_of
 from interp.robot.planning.execution import PathExecution

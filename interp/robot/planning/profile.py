@@ -13,7 +13,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import ruckig
 
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.planning.ramps import NO_RAMP, Bounds, Ramp, ramp
 
 _SLACK = 1e-7

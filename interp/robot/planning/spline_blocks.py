@@ -13,9 +13,9 @@ from itertools import pairwise
 import numpy as np
 
 from interp.robot.arm import Motion, Settings, SplinePart
+from interp.robot.kinematics.kinematics import Array, matrix_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES
-from interp.robot.kinematics.solver import Array, matrix_of
-from interp.robot.kinematics.targets import check_path
+from interp.robot.kinematics.solution_choice import check_path
 from interp.robot.path.axis_path import (
     ExternalAxes,
     JointLine,
@@ -25,8 +25,8 @@ from interp.robot.path.axis_path import (
 )
 from interp.robot.path.circle import circle_through
 from interp.robot.path.pose_path import PosePath
+from interp.robot.path.programmed_targets import Programmed
 from interp.robot.path.spline import Knot, Segment, chains_of, pose_paths_of
-from interp.robot.path.targets_in_force import Programmed
 from interp.robot.planning.junctions import STOP, Junction
 from interp.robot.planning.limits import curve_limits_of
 from interp.robot.planning.spline_ranges import with_ranges

@@ -13,7 +13,7 @@ import numpy as np
 
 from interp.port.requests import SplineRange
 from interp.robot.arm import Motion
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.planning.junctions import AT_REST, SAME_CURVE, STOP, JoinedStretch
 from interp.robot.planning.limits import CurveLimits, Stretch
 from interp.robot.planning.profile import SpeedProfile

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import ROBOT_AXES
-from interp.robot.kinematics.solver import Array
 from interp.robot.path.axis_path import Curve, JointLine, LinearExternals, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine

@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.arm import Samples
-from interp.robot.kinematics.solver import Array
-from interp.robot.path.axis_path import Curve, tool_tangents
+from interp.robot.kinematics.kinematics import Array
+from interp.robot.path.axis_path import Curve
+from interp.robot.path.tool_path import tool_tangents
 from interp.robot.planning.junctions import SAME_CURVE, STOP, JoinedStretch, Junction, PathState
 from interp.robot.planning.limits import CurveLimits, Stretch
 from interp.robot.planning.profile import SpeedProfile

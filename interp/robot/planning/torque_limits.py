@@ -15,7 +15,7 @@ from typing import Protocol
 import numpy as np
 
 from interp.robot.arm import Load
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.axis_path import Curve
 
 _MARGIN = 0.95

@@ -11,21 +11,21 @@ import numpy as np
 from grammar.motion_kinds import AXIS_MOTIONS
 from interp.robot.arm import Motion, Settings, Target
 from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.kinematics import Array, matrix_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import IpoMode
-from interp.robot.kinematics.solver import Array, matrix_of
 from interp.robot.path.axis_path import (
     Curve,
     ExternalAxes,
     JointLine,
     LinearExternals,
     PosePathCurve,
-    tool_tangents,
 )
 from interp.robot.path.circle import Circle, circle_through
 from interp.robot.path.orientation import Carried, Orientation, Turning, about, turning
 from interp.robot.path.pose_path import Arc, PosePath, StraightLine
-from interp.robot.path.targets_in_force import Programmed
+from interp.robot.path.programmed_targets import Programmed
+from interp.robot.path.tool_path import tool_tangents
 from interp.robot.path.wrist import WristCurve
 from interp.robot.planning.axis_limits import AxisLimits, axis_limits
 from interp.robot.planning.junctions import STOP, Junction

@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.arm import Load
+from interp.robot.kinematics.kinematics import Array, matrix_of
 from interp.robot.kinematics.machine_data import AxisKind, MachineData
-from interp.robot.kinematics.solver import Array, matrix_of
 from interp.robot.simulation.mujoco_model import mjcf_of
 from interp.robot.simulation.scene import Scene, SceneError, SceneObject
 from interp.values.poses import Pose

@@ -13,8 +13,8 @@ import math
 import mujoco
 import numpy as np
 
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import AxisKind
-from interp.robot.kinematics.solver import Array
 from interp.robot.simulation.cell import OBJECT, Cell
 from interp.robot.simulation.links import reach_of
 from interp.robot.simulation.observations import Observation, Periods, Times

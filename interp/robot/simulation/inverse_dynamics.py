@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 
 from interp.robot.arm import Load
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.simulation.cell import Cell, put_loads
 
 _NO_FORCES = int(

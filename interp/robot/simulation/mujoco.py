@@ -19,7 +19,7 @@ import numpy as np
 from mujoco import rollout
 
 from interp.robot.arm import Load, Samples
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.simulation.cell import Cell, put_loads
 from interp.robot.simulation.inverse_dynamics import InverseDynamics
 from interp.robot.simulation.robot import Measured, RobotFault, check_samples

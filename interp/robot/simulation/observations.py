@@ -12,8 +12,8 @@ from typing import Literal, Protocol, TypedDict
 import numpy as np
 import numpy.typing as npt
 
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import MachineData
-from interp.robot.kinematics.solver import Array
 
 _MOST = 1000  # observations of one kind
 

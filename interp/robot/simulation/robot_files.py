@@ -20,6 +20,7 @@ import mujoco
 import numpy as np
 
 from interp.robot.kinematics.chain import Chain, Joint
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import (
     ROBOT_AXES,
     Axis,
@@ -27,7 +28,6 @@ from interp.robot.kinematics.machine_data import (
     Dynamics,
     MachineData,
 )
-from interp.robot.kinematics.solver import Array
 from interp.values.poses import Pose
 from support.files.untrusted import read_bytes
 

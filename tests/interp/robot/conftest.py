@@ -11,9 +11,9 @@ import pytest
 from interp.port.requests import At
 from interp.robot.arm import ArmEvent, Motion, Samples, Settings
 from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.kinematics import Kinematics
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.kinematics.machine_reader import read_machine
-from interp.robot.kinematics.solver import Kinematics
 from interp.robot.planning.planned_arm import PlannedArm
 
 LIMITS = ((-170, 170), (-190, 45), (-120, 156), (-350, 350), (-125, 125), (-350, 350))

@@ -11,7 +11,7 @@ from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.data_list import Key, Value, read_data_list
 from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.targets import solve
+from interp.robot.kinematics.solution_choice import solve
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 

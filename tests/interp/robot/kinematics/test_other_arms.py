@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.chain import Chain, Joint
+from interp.robot.kinematics.kinematics import Array, Kinematics, matrix_of
 from interp.robot.kinematics.machine_data import (
     MachineData,
     MachineDataError,
@@ -21,8 +22,7 @@ from interp.robot.kinematics.machine_data import (
 from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.numeric import NumericKinematics
 from interp.robot.kinematics.palletiser import Palletiser
-from interp.robot.kinematics.solver import Array, Kinematics, matrix_of
-from interp.robot.kinematics.targets import ptp_target, solve
+from interp.robot.kinematics.solution_choice import ptp_target, solve
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from interp.port.requests import At
 from interp.robot.arm import Approximation, Motion, Settings, Target
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import MachineData
-from interp.robot.kinematics.solver import Array
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.planning.profile import travel as whole_way

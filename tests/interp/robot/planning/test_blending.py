@@ -14,7 +14,7 @@ from interp.robot.arm import Approximation, Motion, Settings
 from interp.robot.kinematics.placement import Placement
 from interp.robot.path.axis_path import BlendedAxes
 from interp.robot.path.pose_path import Blend
-from interp.robot.path.targets_in_force import Programmed
+from interp.robot.path.programmed_targets import Programmed
 from interp.robot.planning.blend_zones import Zone
 from interp.robot.planning.blending import blend_of
 from interp.robot.planning.tracks import Tracks

@@ -11,7 +11,7 @@ import pytest
 
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.targets import follow
+from interp.robot.kinematics.solution_choice import follow
 from interp.robot.path.axis_path import JointLine, LinearExternals, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine, poses_of
@@ -19,8 +19,8 @@ from interp.robot.planning.axis_limits import axis_limits
 from interp.robot.planning.limits import CurveLimits, PathLimits, curve_limits_of
 
 if TYPE_CHECKING:
+    from interp.robot.kinematics.kinematics import Array
     from interp.robot.kinematics.machine_data import MachineData
-    from interp.robot.kinematics.solver import Array
 
 START = np.array([0.0, -90.0, 100.0, 0.0, 60.0, 0.0, 0.0])
 NONE = np.zeros(1)

@@ -15,7 +15,7 @@ pytest.importorskip("ruckig")
 
 from interp.port.requests import At
 from interp.robot.arm import Load, Motion, Settings
-from interp.robot.kinematics.solver import Array
+from interp.robot.kinematics.kinematics import Array
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.cell import Cell

@@ -13,7 +13,7 @@ from interp.robot.arm import Samples, Settings
 from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.targets import follow, solve
+from interp.robot.kinematics.solution_choice import follow, solve
 from interp.robot.models import default_machine
 from interp.robot.simulation.cell import Cell
 from interp.robot.simulation.factory import make_robot

@@ -1,4 +1,4 @@
-"""The choice of a solution for a point: Status, Turn and singularities [POS-04 to POS-08].
+"""Which axes reach a point: the choice by Status, Turn or the start [POS-04 to POS-08].
 
 Up to eight solutions reach a pose, and more if an axis can turn further than 360 degrees. Status
 selects the configuration; among the solutions within the software limits no two have the same
@@ -16,8 +16,8 @@ from enum import Enum
 import numpy as np
 import numpy.typing as npt
 
+from interp.robot.kinematics.kinematics import Array, Kinematics, matrix_of, nearest_turns
 from interp.robot.kinematics.machine_data import Axis
-from interp.robot.kinematics.solver import Array, Kinematics, matrix_of, nearest_turns
 from interp.values.faults import Fault
 from interp.values.poses import IDENTITY, Pose
 

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from interp.robot.arm import Motion, Target
+from interp.robot.kinematics.kinematics import Array, Kinematics
 from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES, ROBOT_AXES
 from interp.robot.kinematics.placement import Placement
-from interp.robot.kinematics.solver import Array, Kinematics
-from interp.robot.kinematics.targets import TargetStatus, check_limits, ptp_target
+from interp.robot.kinematics.solution_choice import TargetStatus, check_limits, ptp_target
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.solver import Array, Kinematics
-from interp.robot.kinematics.targets import (
+from interp.robot.kinematics.kinematics import Array, Kinematics
+from interp.robot.kinematics.solution_choice import (
     Singularity,
     TargetStatus,
     check_limits,
