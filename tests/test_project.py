@@ -177,7 +177,7 @@ def test_make_has_the_agreed_targets() -> None:
 
 @pytest.mark.parametrize("document", _documents(), ids=lambda path: str(path.name))
 def test_documents_name_what_there_is(document: Path) -> None:
-    """Targets of make, commands of `krl`, modules and linked files that a document names exist."""
+    """Targets, commands, modules, names in modules and linked files that a document names exist."""
     text = document.read_text(encoding="utf-8")
     code = "\n".join(
         re.findall(r"```.*?\n(.*?)```", text, re.DOTALL) + re.findall(r"`(.+?)`", text)
@@ -190,6 +190,9 @@ def test_documents_name_what_there_is(document: Path) -> None:
         path.as_posix() for top in (*PACKAGES, "tests") for path in (ROOT / top).rglob("*.py")
     ]
     assert set() == {one for one in named if not any(path.endswith(f"/{one}") for path in modules)}
+    for name, file in re.findall(r"`(\w+)` in `([a-z0-9_/]+\.py)`", text):
+        found = [ROOT / path for path in modules if path.endswith(f"/{file}")]
+        assert any(re.search(rf"\b{name}\b", path.read_text(encoding="utf-8")) for path in found)
     for name in re.findall(rf"`((?:{'|'.join(PACKAGES)})(?:\.\w+){{2,}})`", text):
         resolve_name(name)
     links = set(re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text))
