@@ -126,7 +126,7 @@ def read_through(
             (tuple((n, grammars[n]) for n in run), tuple(m.content for m in block.members))
             for block, run in runs
         )
-        read = ordered_map(_perform, tasks, jobs=jobs)
+        read = ordered_map(_read_under, tasks, jobs=jobs)
         for (block, run), results in zip(runs, read, strict=True):
             for member, result in zip(block.members, results, strict=True):
                 known[member.index].add(result, run)
@@ -250,7 +250,9 @@ def _blocks(contents: Sequence[Content], known: Sequence[_Known]) -> Iterator[_B
 _Result = dict[int, int] | str | Skipped
 
 
-def _perform(run: tuple[tuple[int, Grammar], ...], contents: tuple[Content, ...]) -> list[_Result]:
+def _read_under(
+    run: tuple[tuple[int, Grammar], ...], contents: tuple[Content, ...]
+) -> list[_Result]:
     """Return the results of contents under a run of grammars."""
     texts = [_text(content) for content in contents]
     results: list[_Result] = [{} if isinstance(text, Decoded) else text for text in texts]

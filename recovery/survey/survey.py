@@ -93,7 +93,7 @@ def survey(
             gathered = _Gathered(store, files)
             tasks = ((grammar.text, contents) for contents in _tasks(gathered))
             for done in ordered_map(
-                _perform, tasks, jobs=jobs or _processes(size), scheduler=scheduler
+                _read_contents, tasks, jobs=jobs or _processes(size), scheduler=scheduler
             ):
                 gathered.add(done)
                 on_done(len(done))
@@ -136,7 +136,8 @@ def _finder(grammar_text: str) -> FailureFinder:
     return FailureFinder(Recognizer(g4.read(grammar_text)))
 
 
-def _perform(grammar_text: str, contents: tuple[bytes, ...]) -> list[Kept]:
+def _read_contents(grammar_text: str, contents: tuple[bytes, ...]) -> list[Kept]:
+    """Return what is found in each content: why it is skipped, or its failures and names."""
     finder = _finder(grammar_text)
     results: list[Kept] = []
     for data in contents:
