@@ -251,7 +251,7 @@ MOST_CONFIGURATIONS_KEPT = 40_000
 #: Configurations of one state under an edited grammar; an edit that needs more gives lines
 #: exponentially many readings and is no good one. Bound: without it one edit could use up the
 #: memory.
-MOST_READINGS = 2_000
+MOST_CONFIGURATIONS_TRIED = 2_000
 #: States in which one line is read under an edit, for the same reason. Bound: of 600,000 lines read
 #: under edits of the restrictive start none needed more than 281.
 MOST_STATES = 2_000

@@ -14,9 +14,9 @@ from functools import partial
 from typing import Final, Literal
 
 from conformance.differential import divergence
-from conformance.differential.observation import Observed, difference, observe
 from conformance.differential.random_world import QuietWorld
 from conformance.differential.runs import facts_of
+from conformance.differential.undisturbed_run import Observed, difference, observe
 from grammar.check.project.framework import Findings, check_module
 from grammar.syntax.source import Source
 from interp.bytecode.compiler import Compiled, compile_program

@@ -1,4 +1,4 @@
-"""The divergence of two executors: the first fact that differs, with its context."""
+"""The divergence of two executors in `krl fuzz`: the first fact that differs, with its context."""
 
 from __future__ import annotations
 

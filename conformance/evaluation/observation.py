@@ -62,7 +62,7 @@ class Event:
                 int(line or 0),
                 rest,
             )
-        except (KeyError, TypeError) as error:
+        except (KeyError, OverflowError, TypeError, ValueError) as error:
             raise ValueError(f"no event of a trace: {record!r}") from error
 
 

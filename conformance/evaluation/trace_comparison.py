@@ -1,4 +1,4 @@
-"""The first difference between two runs of a case, with the state of both at that point.
+"""The first difference between two runs of a case in `krl conform`, with the state of both there.
 
 Executors conform to each other if their traces are equal, at the full level too [docs/trace.md].
 `first_divergence` finds the first event that differs. For both sides it reports the values of all

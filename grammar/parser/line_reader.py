@@ -1,4 +1,4 @@
-"""Reading line by line, with the transition over a whole line cached.
+"""The recogniser line by line, with the step over a whole line cached; builds no trees.
 
 Real source repeats few kinds of line. Each kind gets a number, and the step from one state over a
 whole line to the next is cached. A line that was read in the same state before costs one look-up,

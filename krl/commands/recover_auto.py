@@ -66,7 +66,7 @@ def recover_auto(
         goal = read_file(target, read_foreign) if target else None
         language = language_of(suffix) if suffix else KRL
         files = language.files(roots)
-        ledger, struck = _begun(start, out, strike, resume=resume)
+        ledger, struck = _ledger_so_far(start, out, strike, resume=resume)
     lexer = lexer_of(ledger.start)
     for kind, what in ((lexer.line_kind, "line ends"), (lexer.name_kind, "names")):
         if kind == ABSENT:
@@ -119,7 +119,7 @@ def recover_auto(
     return FINE
 
 
-def _begun(
+def _ledger_so_far(
     start: "Grammar", out: Path, strike: Sequence[str], *, resume: bool
 ) -> "tuple[InducedLedger, list[tuple[Edit, ...]]]":
     """Return where to continue, and the edits that must not be taken again."""
@@ -143,9 +143,6 @@ def _begun(
             struck = [tuple(from_data(edit) for edit in edits) for edits in known]
         except (ValueError, TypeError, AttributeError) as error:
             raise InputError(f"{struck_file}: {error}") from None
-    unknown = set(strike) - {construct.id for construct in constructs}
-    if unknown:
-        raise InputError(f"{out / 'constructs'}: no construct {', '.join(sorted(unknown))}")
     struck += [c.edits for c in constructs if c.id in strike]
     left, gone = without(start, constructs, strike)
     for construct in gone:

@@ -1,4 +1,4 @@
-"""A session of the Debug Adapter Protocol: the client's requests and their handlers."""
+"""The requests of the Debug Adapter Protocol, given to the program or answered here."""
 
 import re
 from collections.abc import Mapping

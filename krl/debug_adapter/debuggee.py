@@ -1,4 +1,4 @@
-"""The program being debugged: its thread, where it has stopped, and how it continues.
+"""The program being debugged: file and options, its thread, where it stops, how it continues.
 
 Requests are read on one thread. The program runs on another one. Where it stops, that thread waits
 until a request lets it continue; the program is only inspected meanwhile.

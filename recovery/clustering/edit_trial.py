@@ -1,5 +1,8 @@
 """Trial of an edit: which failing lines can be read under the edited grammar?
 
+An edit that only adds is tried in the shared network (`recovery.clustering.joint_trial`), any other
+in a recogniser of its own.
+
 A line is tried after the shortest tokens that lead to the state in which it began. No code is
 generated and no file is read again, so a candidate costs milliseconds.
 """
@@ -16,12 +19,12 @@ from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.network import is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.shortest_paths import Paths
-from recovery.clustering.detours import DetourReader, Path
+from recovery.clustering.joint_trial import DetourReader, Path
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import (
     LINES_READ_TWICE,
     MOST_CONFIGURATIONS_KEPT,
-    MOST_READINGS,
+    MOST_CONFIGURATIONS_TRIED,
     MOST_RECOGNIZERS_KEPT,
 )
 from support.gc_pause import gc_paused
@@ -62,7 +65,7 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
     if is_left_recursive(network, changed, recognizer.empty_rules):
         return None
     found = Recognizer(grammar, network)
-    found.most_ways = MOST_READINGS
+    found.most_ways = MOST_CONFIGURATIONS_TRIED
     return found
 
 

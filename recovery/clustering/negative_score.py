@@ -22,8 +22,8 @@ from grammar.notation.model import (
 )
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import NegativeCounter
-from recovery.clustering.detours import DetourReader, Path, rule_of
 from recovery.clustering.edit_trial import changed_rules, edited
+from recovery.clustering.joint_trial import DetourReader, Path, rule_of
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.tuning import GENERATED_NEGATIVES, MOST_CONFIGURATIONS_KEPT, NEGATIVES_SEED

@@ -28,8 +28,6 @@ from support.files.atomic_write import write_atomic
 from support.files.discovery import SUFFIXES
 from support.files.untrusted import read_bytes, read_text, toml_of
 
-"""The file name endings of KRL, in lower case."""
-
 _COLUMNS = ["repository", "path", "bytes", "sha256", "kind", "quality"]
 _REPOSITORY = re.compile(r"[A-Za-z0-9][A-Za-z0-9-]*/[A-Za-z0-9_][A-Za-z0-9._-]*")
 _COMMIT = re.compile(r"[0-9a-f]{40}")

@@ -1,4 +1,4 @@
-"""What a form has for operands: names, or the narrowest rules that together read all of them."""
+"""What to write for operands already found: names, or the narrowest rules that read all of them."""
 
 from __future__ import annotations
 

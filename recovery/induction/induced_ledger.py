@@ -16,7 +16,7 @@ from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.rebase import rebased
 from grammar.notation.wellformed import problem
 from recovery.induction.steps import AcceptedStep, Reading, RefusedStep, Round, described
-from recovery.ledger.construct import Construct, Evidence
+from recovery.ledger.construct import Construct, Evidence, LedgerError
 from recovery.ledger.construct_file import name_from
 from recovery.ledger.ledger import in_force
 
@@ -89,9 +89,12 @@ def without(
     """Return the constructs that remain after some are struck out, and those removed with them.
 
     Constructs that no longer apply are removed, too. The others are numbered again, and their edits
-    have the addresses of the same places in the remaining grammar.
+    have the addresses of the same places in the remaining grammar. Raises `LedgerError` if there is
+    no construct of such an id.
     """
     wanted = set(struck)
+    if unknown := sorted(wanted - {construct.id for construct in constructs}):
+        raise LedgerError(f"no construct {', '.join(unknown)}")
     left: list[Construct] = []
     gone: list[Construct] = []
     whole = grammar = start

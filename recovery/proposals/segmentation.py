@@ -1,7 +1,7 @@
 """Segmentation: the tokens of a line cut into operands and single words or signs.
 
 ``STEP A + 1`` is the word ``STEP`` and one operand, because some rule reads ``A + 1`` as a whole.
-The cheapest segmentation is found by dynamic programming.
+The cheapest segmentation is found by dynamic programming; of equal ones the first found is kept.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """Discovery of KRL files in folders and archives, each file exactly once.
 
-`discover` finds the candidates. `read` returns the bytes of one, in any process, and `read_source`
-its text too. Nothing is lost silently: what cannot be read becomes a `Skipped` with its reason. The
-order is that of sorted paths, the same on every system and for every order of the roots.
+`discover` finds the candidates, `files_around` those in the folders around one. `read` returns the
+bytes of one, in any process, and `read_source` its text too. Nothing is lost silently: what cannot
+be read becomes a `Skipped` with its reason. The order is that of sorted paths, the same on every
+system and for every order of the roots.
 """
 
 from __future__ import annotations

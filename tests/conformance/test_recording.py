@@ -132,6 +132,11 @@ def test_changed_and_unknown_cases_are_reported(tmp_path: Path, cases: list[Case
         ),
         (
             '{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": '
+            '[{"case": "a", "digest": "", "events": [{"kind": "out", "at": "a.src"}]}]}',
+            "case a: no event of a trace: .*'at': 'a.src'",
+        ),
+        (
+            '{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": '
             '[{"case": "a", "digest": "", "watched": "out"}]}',
             "case a: its watched are no list",
         ),

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from conformance.differential.observation import Observed, observe
 from conformance.differential.random_world import QuietWorld
+from conformance.differential.undisturbed_run import Observed, observe
 from grammar.syntax.source import Source
 from interp.executors import EXECUTORS, Prepared, is_available
 from interp.port.events import ExecutorEvent, Sink

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from conformance.differential.observation import Observed
 from conformance.differential.random_world import QuietWorld
+from conformance.differential.undisturbed_run import Observed
 from grammar.semantics.types import Array
 from grammar.syntax.source import Source
 from interp.bytecode.compiler import compile_program

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from conformance.differential.observation import Observed
 from conformance.differential.random_world import QuietWorld
+from conformance.differential.undisturbed_run import Observed
 from interp.executors import COMPILED, EXECUTORS, is_available
 from interp.port.events import ExecutorEvent
 from interp.port.executor import Executor

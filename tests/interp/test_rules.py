@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 
-from conformance.differential.observation import observe
 from conformance.differential.random_world import QuietWorld
+from conformance.differential.undisturbed_run import observe
 from grammar.syntax.source import Source
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import Verified, verify

@@ -17,6 +17,7 @@ from grammar.syntax.walk import without_parentheses
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import array_sizes, elements
 from interp.bytecode.compiler.emitter import Emitter
+from interp.bytecode.compiler.loads_and_stores import Memory
 from interp.bytecode.compiler.locations import (
     DataCells,
     FrameCells,
@@ -31,7 +32,6 @@ from interp.bytecode.compiler.locations import (
     View,
     ViewParameter,
 )
-from interp.bytecode.compiler.memory import Memory
 from interp.program.variables import signal_ends, untyped
 from interp.values.faults import LinkError
 

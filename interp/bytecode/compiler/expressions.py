@@ -27,6 +27,7 @@ from interp.bytecode.cell_layout import bits_of
 from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.designators import Designators, literal
 from interp.bytecode.compiler.emitter import Emitter
+from interp.bytecode.compiler.loads_and_stores import Memory
 from interp.bytecode.compiler.locations import (
     FrameCells,
     Location,
@@ -37,7 +38,6 @@ from interp.bytecode.compiler.locations import (
     Value,
     ViewParameter,
 )
-from interp.bytecode.compiler.memory import Memory
 from interp.program.literals import LITERALS, enumeration_constant
 from interp.program.reads import UNKNOWN_STRUCTURE, structure_of
 from interp.values.faults import Fault, LinkError

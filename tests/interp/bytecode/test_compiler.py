@@ -10,10 +10,10 @@ from typing import get_args
 import pytest
 
 from conformance.differential.corpus_routines import Trial, trials
-from conformance.differential.observation import Observed, difference, observe
 from conformance.differential.random_world import QuietWorld
 from conformance.differential.runs import facts_of
 from conformance.differential.traces import fact_of
+from conformance.differential.undisturbed_run import Observed, difference, observe
 from grammar.syntax import ast
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from conformance.differential.observation import Observed, observe
 from conformance.differential.random_world import QuietWorld
+from conformance.differential.undisturbed_run import Observed, observe
 from grammar.syntax.source import Source
 from interp.port.requests import Crash, End, Fail
 from interp.program.load import Limits, load

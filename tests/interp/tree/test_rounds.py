@@ -4,8 +4,8 @@ from functools import partial
 
 import pytest
 
-from conformance.differential.observation import observe
 from conformance.differential.random_world import QuietWorld
+from conformance.differential.undisturbed_run import observe
 from grammar.syntax.source import Source
 from interp.port.events import Sink
 from interp.port.requests import End, Fail, Slice

@@ -13,9 +13,9 @@ from grammar.notation.g4 import read
 from grammar.notation.model import Grammar, GrammarError
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.sentences import Sentences
-from recovery.clustering.detours import DetourReader
 from recovery.clustering.edit_merging import combined_edits
 from recovery.clustering.edit_trial import edited
+from recovery.clustering.joint_trial import DetourReader
 
 RandomGrammar = Callable[[Random], Grammar]
 Mutated = Callable[[Sequence[str], Random, Sequence[str]], list[str]]

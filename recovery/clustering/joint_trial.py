@@ -1,4 +1,4 @@
-"""Trial of edits without a new recogniser: an edit is a detour in one shared network.
+"""Joint trial of many edits in one shared network, in which each edit is a detour.
 
 An edit that only adds something lets a rule be left at one place, another text be read, and the
 rule be continued at a later place. These texts, and the remainders of the rules, become additional
@@ -24,7 +24,7 @@ from grammar.parser.network import Network, Reach
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.rule_automaton import RuleAutomaton, exact_automata
 from recovery.forms.parts import parts
-from recovery.tuning import MOST_READINGS, MOST_STATES
+from recovery.tuning import MOST_CONFIGURATIONS_TRIED, MOST_STATES
 
 #: The first position of a detour, and the position to return to after it, if it reads a text.
 _Detour = tuple[int, int | None]
@@ -44,7 +44,7 @@ class Detours:
     starts: dict[tuple[Core, int], Core | None] = field(default_factory=dict, compare=False)
 
 
-class _TooManyReadings(Exception):
+class _TooManyStates(Exception):
     """A line is read in more than `MOST_STATES` states."""
 
 
@@ -116,7 +116,7 @@ class DetourReader:
                 entry[grammar.start],
             ),
         )
-        self.recognizer.most_ways = MOST_READINGS
+        self.recognizer.most_ways = MOST_CONFIGURATIONS_TRIED
 
     def kind(self, word: str) -> int:
         """Return the token kind of a word that edits reserve."""
@@ -251,7 +251,7 @@ class DetourReader:
             if not cores.isdisjoint(path.cores):
                 try:
                     furthest = self._read(detours, path, cores)
-                except _TooManyReadings:
+                except _TooManyStates:
                     cores = frozenset()
             yield furthest
 
@@ -273,7 +273,7 @@ class DetourReader:
             # a state that is on the path fails at the same token as the path
             while (state, number) not in met and path.states[number : number + 1] != [state]:
                 if len(met) == MOST_STATES:
-                    raise _TooManyReadings
+                    raise _TooManyStates
                 met.add((state, number))
                 following = recognizer.step(state, kinds[number])
                 if following is None:
@@ -344,7 +344,7 @@ class DetourReader:
             if not fresh:
                 break
             found |= fresh
-            if len(found) > MOST_READINGS:
+            if len(found) > MOST_CONFIGURATIONS_TRIED:
                 return None
             ways = recognizer.ways(recognizer.state_of(fresh).core)
             fresh = set()
