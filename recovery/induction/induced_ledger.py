@@ -94,7 +94,7 @@ def without(
     """
     wanted = set(struck)
     if unknown := sorted(wanted - {construct.id for construct in constructs}):
-        raise LedgerError(f"no construct {', '.join(unknown)}")
+        raise LedgerError(f"there is no construct {', '.join(unknown)}")
     left: list[Construct] = []
     gone: list[Construct] = []
     whole = grammar = start

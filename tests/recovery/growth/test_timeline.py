@@ -114,7 +114,7 @@ def test_what_is_kept_is_not_read_again(
 ) -> None:
     """A second time nothing is left to do, and the result is the same."""
     first = timelines(corpus, cache=tmp_path / "cache")
-    monkeypatch.setattr(timeline, "_perform", lambda *_: pytest.fail("read again"))
+    monkeypatch.setattr(timeline, "_read_under", lambda *_: pytest.fail("read again"))
     assert record_of(first) == record_of(timelines(corpus, cache=tmp_path / "cache"))
 
 
@@ -125,7 +125,7 @@ def test_only_what_is_new_is_read(
     timelines(corpus, ROW[:4], cache=tmp_path / "cache")
     (corpus / "new.src").write_text("DEF N()\nHALT\nEND\n", encoding="utf-8")
     asked: list[tuple[list[int], int]] = []
-    perform = timeline._perform
+    perform = timeline._read_under
 
     def watched(
         run: tuple[tuple[int, Grammar], ...], contents: tuple[timeline.Content, ...]
@@ -133,7 +133,7 @@ def test_only_what_is_new_is_read(
         asked.append(([number for number, _ in run], len(contents)))
         return perform(run, contents)
 
-    monkeypatch.setattr(timeline, "_perform", watched)
+    monkeypatch.setattr(timeline, "_read_under", watched)
     kept = timelines(corpus, cache=tmp_path / "cache")
     # table.dat is no KRL under any grammar
     assert {(4, 5), (0, 1), (1, 1), (2, 1), (3, 1), (4, 1)} == {
@@ -147,7 +147,7 @@ def test_a_growth_that_breaks_off_goes_on_with_the_next_grammar(
 ) -> None:
     """What was read under the first grammars is kept before the others have had their turn."""
     asked: list[int] = []
-    perform = timeline._perform
+    perform = timeline._read_under
 
     def breaking(
         run: tuple[tuple[int, Grammar], ...], contents: tuple[timeline.Content, ...]
@@ -157,7 +157,7 @@ def test_a_growth_that_breaks_off_goes_on_with_the_next_grammar(
             raise KeyboardInterrupt
         return perform(run, contents)
 
-    monkeypatch.setattr(timeline, "_perform", breaking)
+    monkeypatch.setattr(timeline, "_read_under", breaking)
     with pytest.raises(KeyboardInterrupt):
         timelines(corpus, cache=tmp_path / "cache")
     kept = timelines(corpus, cache=tmp_path / "cache")
@@ -173,7 +173,7 @@ def test_what_is_kept_holds_for_another_row_of_the_same_grammars(
     timelines(corpus, cache=tmp_path / "cache")
     other = [ROW[0], ROW[3], ROW[1]]
     expected = record_of(timelines(corpus, other))
-    monkeypatch.setattr(timeline, "_perform", lambda *_: pytest.fail("read again"))
+    monkeypatch.setattr(timeline, "_read_under", lambda *_: pytest.fail("read again"))
     assert expected == record_of(timelines(corpus, other, cache=tmp_path / "cache"))
 
 
@@ -239,7 +239,7 @@ def test_a_file_that_parses_is_not_read_while_the_grammar_only_adds(
             return super().find(text)
 
     monkeypatch.setattr(timeline, "FailureFinder", Watched)
-    results = timeline._perform(tuple(enumerate(ROW)), tuple(contents))
+    results = timeline._read_under(tuple(enumerate(ROW)), tuple(contents))
     assert alone == {
         content.path: result
         for content, result in zip(contents, results, strict=True)
