@@ -44,7 +44,7 @@ def test_nothing_is_read_again(
 ) -> None:
     """Unchanged contents are not handed to a process a second time."""
     run(corpus, tmp_path / "cache")
-    monkeypatch.setattr(survey_module, "_perform", lambda *_: pytest.fail("read again"))
+    monkeypatch.setattr(survey_module, "_read_contents", lambda *_: pytest.fail("read again"))
     assert len(run(corpus, tmp_path / "cache").files) == 2
 
 
