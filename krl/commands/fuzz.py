@@ -50,13 +50,15 @@ def fuzz(
     from conformance.differential.campaign import record_of
     from conformance.differential.construct_coverage import needs
     from conformance.suite.case import CaseError, find_cases
+    from support.parallel.ordered_map import check_scheduler
     from support.parallel.workers import WorkersError
 
     check_files(json_file)
     if scheduler is not None:
         need("distributed")
     names = _chosen(executor or [])
-    with as_input_errors(CaseError):
+    with as_input_errors(CaseError, WorkersError):
+        check_scheduler(scheduler)
         rules = needs(find_cases())
     begun = time.perf_counter()
     with as_input_errors(WorkersError), progress_bar("running programs", programs) as bar:

@@ -9,10 +9,9 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
-
-import pytest
 
 from conformance.differential.random_world import QuietWorld
 from conformance.differential.undisturbed_run import observe
@@ -70,8 +69,7 @@ END
 """
 
 
-@pytest.fixture(scope="module")
-def programs() -> list[tuple[CheckedProgram, Verified]]:
+def _programs() -> list[tuple[CheckedProgram, Verified]]:
     """One routine for each row of the table, in programs of `_ROUTINES`, which load faster."""
     texts = [
         _PROGRAM.format(
@@ -104,18 +102,15 @@ def _in_c(_program: CheckedProgram, verified: Verified, name: str, sink: Sink) -
     return NativeMachine(verified, name, sink=sink)
 
 
-@pytest.mark.parametrize("make", [_on_tree, _on_vm, *([_in_c] if AVAILABLE else [])])
-def test_rules(
-    programs: list[tuple[CheckedProgram, Verified]],
-    make: Callable[[CheckedProgram, Verified, str, Sink], Executor],
-) -> None:
+def test_rules() -> None:
     """Each expression has the value, or the fault, that its rules tell, on every executor."""
-    wrong = {}
-    for number, row in enumerate(_ROWS):
+    executors = (_on_tree, _on_vm, *([_in_c] if AVAILABLE else []))
+    programs, wrong = _programs(), {}
+    for (number, row), make in product(enumerate(_ROWS), executors):
         wanted = row[3] if row[3].startswith("!") else json.loads(row[3])
         found = _outcome(partial(make, *programs[number // _ROUTINES], f"CASE_{number}"))
         if wanted != found:
-            wrong[row[0], row[2]] = found, wanted
+            wrong[row[0], row[2], make.__name__] = found, wanted
     assert {} == wrong
 
 
