@@ -174,6 +174,7 @@ def test_busy_before_is_busy_behind() -> None:
     assert slow == quick
 
 
+@pytest.mark.usefixtures("is_soon_idle")
 @pytest.mark.parametrize("executor", MACHINES)
 @pytest.mark.parametrize("body", ["$OUT[1]=$IN[1]\n", "PASS ($IN[2])\n", "", "B=$IN[1]\n"])
 @pytest.mark.parametrize("wait", ["WAIT FOR $IN[7]", "WAIT SEC 90"])
@@ -185,19 +186,21 @@ def test_idle_takes_few_looks(looks: list[int], executor: str, body: str, wait: 
     assert ("time", True) == (run.outcome.ending, len(looks) < 60 * 5)
 
 
+@pytest.mark.usefixtures("is_soon_idle")
 def test_a_counter_is_not_skipped() -> None:
     """A loop that only counts goes on counting."""
     program = _program(SPS.format("", "COUNT=COUNT+1\n$OUT[1]=$IN[1]\n"))
-    script = Script.read("t=5 IN[7]=TRUE\nt=6 IN[8]=TRUE\n")
+    script = Script.read("t=1 IN[7]=TRUE\nt=1.5 IN[8]=TRUE\n")
     quick, slow = _both(program, RunSetup(executor=MACHINES[-1], script=script))
     assert slow == quick
 
 
+@pytest.mark.usefixtures("is_soon_idle")
 @pytest.mark.parametrize("executor", MACHINES)
 def test_slices_keep_their_cycles(executor: str) -> None:
     """Behind a stretch the next slice begins in its own cycle, not at once."""
     setup = RunSetup(
-        executor=executor, profile=replace(Profile.load(), submit_every=3), until=3_000_001
+        executor=executor, profile=replace(Profile.load(), submit_every=3), until=1_000_001
     )
     quick, slow = _both(_program(SPS.format("", "")), setup)
     assert slow == quick
