@@ -37,12 +37,13 @@ _ROUNDED: Final = 1.5e-6
 #: Seconds below which a motion is not checked: there are too few samples between its ends.
 _SHORTEST: Final = 0.2
 #: Fraction of a time by which a motion back may take longer, because its samples differ.
-_BACK: Final = 0.05
+_BACK: Final = 0.03
 #: Degrees that an axis must move for two motions to be compared whose ends are within
 #: `NEAR_DEGREES`.
 _FAR_DEGREES: Final = 5.0
-#: Largest ratio of the duration of blended motions to that of what they are compared with.
-_SLOWER, _STRAIGHT = 1.001, 1.05
+#: Largest ratio of the duration of blended motions to that of what they are compared with, and
+#: microseconds by which rounding may change durations that are equal.
+_SLOWER, _STRAIGHT, _TICKS = 1.001, 1.00001, 2
 #: Fraction of the limits of all axes below which no axis can slow a path down.
 _IDLE: Final = 0.15
 #: The smallest numbers of samples that show the load of the axes.
@@ -228,7 +229,7 @@ def _sequence_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
 
     A motion back takes as long as the motion there. Blended motions are no slower than the same
     motions with exact stops, and, if all were planned before the first began and lie on a straight
-    line, hardly slower than a single motion.
+    line, no slower than a single motion.
     """
     rows = [row for row in _sequences(motions) if not any(one.motion.parts for one in row)]
     if not rows:
@@ -245,7 +246,7 @@ def _sequence_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
                     yield one.broken(law, f"{took} us, not {known} us")
         elif row[-1].planned < one.start:
             for other, known in _single_motions(way, rows, ends, times):
-                if took > known * _STRAIGHT and _is_straight((*row, other)):
+                if took > known * _STRAIGHT + _TICKS and _is_straight((*row, other)):
                     law = "points on a straight way cost no time"
                     yield one.broken(law, f"{took} us, not {known} us")
     for row, took in zip(rows, times, strict=True):

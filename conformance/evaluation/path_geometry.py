@@ -15,8 +15,8 @@ Array = npt.NDArray[np.float64]
 #: The usual tolerances: mm for the tool, degrees (mm if linear) for an axis.
 TOLERANCE_MM: Final = 0.05
 TOLERANCE_DEGREES: Final = 0.01
-#: The largest factor by which `change_rates` overestimates speeds, accelerations and jerks.
-RATE_MARGIN: Final = 1.02
+#: The largest factor by which rounding makes `change_rates` exceed speeds, accelerations and jerks.
+RATE_MARGIN: Final = 1.0005
 
 #: The number of points of a sampled blend arc; its error is 0.001 mm for arcs of 1 m.
 _POINTS = 4_001

@@ -26,9 +26,9 @@ from interp.robot.kinematics.placement import IpoMode
 _SHARES: Final = np.linspace(0.0, 1.0, 501)[:, None]
 _POINT: Final = ("X", "Y", "Z")
 #: Tolerance of a blend zone in mm and degrees.
-_NEAR_MM, _NEAR_DEGREES = 0.05, 0.01
+_NEAR_MM, _NEAR_DEGREES = 0.01, 0.002
 #: Tolerance of times in µs, because times and ends of motions are rounded.
-_NEAR_TIME: Final = 3
+_NEAR_TIME: Final = 2
 #: The largest fraction of a motion that a blend may use.
 _HALF: Final = 0.5
 

@@ -73,20 +73,18 @@ def _pieces(pattern: str) -> Iterator[str | _Specification]:
         if pattern.startswith("%%", place):
             yield "%"
             place += 2
-            continue
-        if pattern[place] != "%":
+        elif pattern[place] != "%":
             end = pattern.find("%", place)
             end = len(pattern) if end < 0 else end
             yield pattern[place:end]
             place = end
-            continue
-        found = _SPECIFICATION.match(pattern, place)
-        if not found:
-            raise _Mismatch
-        flags, width, precision, letter = found.groups()
-        least, digits = _count(width), _count(precision)
-        yield flags, least, digits, letter
-        place = found.end()
+        else:
+            found = _SPECIFICATION.match(pattern, place)
+            if not found:
+                raise _Mismatch
+            flags, width, precision, letter = found.groups()
+            yield flags, _count(width), _count(precision), letter
+            place = found.end()
 
 
 def _count(digits: str | None) -> int | None:

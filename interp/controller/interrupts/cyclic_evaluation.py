@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Final
 
 from interp.controller.interrupts.levels import Levels
@@ -9,7 +10,7 @@ from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import ALWAYS, Answer, Task
-from interp.port.requests import CodeHandle, Path, SetCyclicFlag, SwitchSignal
+from interp.port.requests import CodeHandle, SetCyclicFlag, SwitchSignal
 from interp.values.faults import Fault
 
 #: For each keyword, the profile entry that limits the number of cyclic signals, and its message.
@@ -49,15 +50,10 @@ class CyclicEvaluation:
         If a condition can no longer be evaluated because its routine has ended, the flag keeps its
         value (unconfirmed; the checker rejects such conditions [IOT-11]).
         """
-        variables = self._state.variables
         for number, (task, condition) in sorted(self._flags.items()):
-            try:
-                value = task.holds(condition, variables.read)
-            except Fault:
-                continue
-            path: Path = ("$CYCFLAG", number)
-            variables.put(path, value)
-            self._state.changed(path, value)
+            with suppress(Fault):
+                value = task.holds(condition, self._state.variables.read)
+                self._state.put(("$CYCFLAG", number), value)
 
     @property
     def has_flags(self) -> bool:

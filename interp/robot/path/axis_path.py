@@ -168,7 +168,8 @@ class JointSpline:
     @cached_property
     def end(self) -> Array:
         """See `Curve.end`."""
-        end: Array = self.part.at(np.ones(1))[0]
+        end: Array
+        (end,) = self.part.at(np.ones(1))
         return end
 
     @property
@@ -240,7 +241,8 @@ class BlendedAxes:
     @cached_property
     def end(self) -> Array:
         """See `Curve.end`."""
-        end: Array = self.axes(np.ones(1))[0]
+        end: Array
+        (end,) = self.axes(np.ones(1))
         return end
 
     @property
@@ -295,8 +297,9 @@ class PosePathCurve:
         self.grid, axes = self._points(start)
         self._table = UniformSpline(axes)
         ends = np.concatenate((axes[[0, -1]], others.at(np.array([0.0, 1.0]))), axis=1)
-        self.start: Array = ends[0]
-        self.end: Array = ends[1]
+        self.start: Array
+        self.end: Array
+        self.start, self.end = ends
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""
@@ -362,10 +365,11 @@ class PosePathCurve:
 
 def _blended_rates(blend: BlendedAxes | BlendedExternals, u: Array) -> Rates:
     """Return the derivatives of a blend by u, from those of its two parts."""
-    parameters, rates = blend.transition.at(u), blend.transition.rates(u)
-    leaving = chained(blend.first.rates(parameters[0]), rates[0][:, :, None])
-    joining = chained(blend.second.rates(parameters[1]), rates[1][:, :, None])
-    first, second, third = (one + other for one, other in zip(leaving, joining, strict=True))
+    (one, other), rates = blend.transition.at(u), blend.transition.rates(u)
+    of_one, of_other = (each[:, :, None] for each in rates)
+    leaving = chained(blend.first.rates(one), of_one)
+    joining = chained(blend.second.rates(other), of_other)
+    first, second, third = (left + right for left, right in zip(leaving, joining, strict=True))
     return first, second, third
 
 

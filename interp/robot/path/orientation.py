@@ -99,7 +99,7 @@ def turning(start: Array, end: Array, extent: float = 1.0) -> Turning:
         swivel = 0.0 if ahead > 0.0 else math.pi
     else:
         axis = np.array([0.0, -up, left]) / aside
-    rest = about(axis, np.array([-swivel]))[0] @ change
+    (rest,) = about(axis, np.array([-swivel])) @ change
     twist = math.atan2(rest[2, 1], rest[1, 1])
     if abs(twist) < _PARALLEL:
         twist = 0.0

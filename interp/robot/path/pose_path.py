@@ -133,10 +133,9 @@ class Blend:
     def tangents(self, u: Array) -> Array:
         """See `PosePath.tangents`."""
         one, other = self.transition.at(u)
-        leaving, joining = self.transition.rates(u)
-        tangents: Array = leaving[0][:, None] * self.first.tangents(one) + joining[0][
-            :, None
-        ] * self.second.tangents(other)
+        (leaving, *_), (joining, *_) = self.transition.rates(u)
+        before = leaving[:, None] * self.first.tangents(one)
+        tangents: Array = before + joining[:, None] * self.second.tangents(other)
         return tangents
 
 

@@ -161,11 +161,11 @@ def chains_of(segments: Sequence[Segment]) -> list[list[Segment]]:
 
 def pose_paths_of(chain: Sequence[Segment]) -> list[PosePath]:
     """Return the paths of the segments of one chain, which join smoothly."""
+    start = chain[0].start
     if chain[0].chord < _SHORT:
-        start, end = chain[0].start, chain[0].end
-        turned = turning(start.rotation, end.rotation)
+        turned = turning(start.rotation, chain[0].end.rotation)
         return [StraightLine(start.position, start.position, turned)]
-    still = turning(chain[0].start.rotation, chain[0].start.rotation)
+    still = turning(start.rotation, start.rotation)
     shapes: list[StraightLine | Arc | FreeSegment] = []
     place = 0
     while place < len(chain):

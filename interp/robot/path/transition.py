@@ -187,7 +187,7 @@ class Cubics:
         """Return the part between two times."""
         times = self.knots[:, 0]
         inside = self.knots[(times > start) & (times < end)] - [start, 0.0, 0.0, 0.0, 0.0]
-        first = np.concatenate(([0.0], self.at(np.array([start]))[:, 0]))
+        first = np.append(0.0, self.at(np.array([start])))
         return Cubics(np.vstack((first, inside)), end - start)
 
 
@@ -228,7 +228,8 @@ class Overlap:
     @cached_property
     def after(self) -> float:
         """See `Transition.after`."""
-        return float(self.starting.at(np.array([self.starting.duration]))[0, 0])
+        value, *_ = self.starting.at(np.array([self.starting.duration]))
+        return float(value.item())
 
     @property
     def breaks(self) -> Array:

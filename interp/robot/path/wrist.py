@@ -41,7 +41,8 @@ class WristCurve(PosePathCurve):
     ) -> None:
         (end,) = poses_of(pose_path, np.ones(1))
         try:
-            there = placement.at(others.at(np.ones(1))[0].tolist())
+            (own,) = others.at(np.ones(1))
+            there = placement.at(own.tolist())
             flange = there.flange(Pose.from_matrix(end.tolist()))
             goal = ptp_target(arm, flange, start.tolist(), tool=placement.tool)
         except Fault as error:
@@ -63,11 +64,11 @@ class WristCurve(PosePathCurve):
         wanted = (before[..., :3, :3] @ positions[:, :, None])[:, :, 0] + before[..., :3, 3]
         shifts = np.vstack((np.zeros((1, 6)), _STEP * np.eye(6)[:_MAIN]))
         for _ in range(_ROUNDS):
-            places = self._tool_at(axes + shifts[:, None])
-            missing = wanted - places[0]
+            here, *beside = self._tool_at(axes + shifts[:, None])
+            missing = wanted - here
             if np.abs(missing).max(initial=0.0) < _EXACT:
                 break
-            slopes = np.moveaxis(places[1:] - places[0], 0, -1) / _STEP
+            slopes = np.moveaxis(np.array(beside) - here, 0, -1) / _STEP
             try:
                 step = np.linalg.solve(slopes, missing[:, :, None])[:, :, 0]
             except np.linalg.LinAlgError:

@@ -52,7 +52,6 @@ _BACK = -0.99
 """The smallest cosine of a corner whose speed is kept; a reversal has no finite curve."""
 _EVEN = 1e-6
 _GRID = np.linspace(0.0, 1.0, 65)
-_STEP = 1.0 / 64.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,7 +111,7 @@ class _Corner:
             and isinstance(other, PosePathCurve)
             and one.pose_path
             and other.pose_path
-            and self.settings[0].placement == self.settings[1].placement
+            and one.placement == other.placement
         ):
             self.common = one, other
 
@@ -152,7 +151,7 @@ class _Corner:
         programmed, most = slowest, math.inf
         if self.common is not None:
             tangents = self._pose_path(self.common, transition).tangents(_GRID)
-            bends = np.gradient(tangents, _STEP, axis=0)
+            bends = np.gradient(tangents, _GRID, axis=0)
             sharpest, fastest = (
                 max(float(np.linalg.norm(rows, axis=1).max()), _TINY) for rows in (bends, tangents)
             )
@@ -178,8 +177,8 @@ class _Corner:
         curve = straight_through(parts, 1.0 - zone.before, zone.after)
         if curve is None or len(one.paths) != len(other.paths):
             return None
-        ways = parts[0].way, parts[1].way
-        length = zone.before * ways[0] + zone.after * ways[1]
+        way, way_behind = (part.way for part in parts)
+        length = zone.before * way + zone.after * way_behind
         shares = zone.before, zone.after
         straight = extended(self.tracks, run, self.first, self.second, shares)
         if straight is not None:
@@ -196,7 +195,7 @@ class _Corner:
                 for x, y in zip(one.paths, other.paths, strict=True)
             )
             curve_limits = curve_limits_of(curve, self.tracks.limits, allowed, paths)
-        into, out = Junction(ways[0] / length), Junction(length / ways[1])
+        into, out = Junction(way / length), Junction(length / way_behind)
         return PlannedBlend(zone, curve, curve_limits, into, out, straight)
 
     def soonest(self, zone: Zone, weights: tuple[float, float]) -> Transition:
@@ -211,7 +210,9 @@ class _Corner:
         are_lines = all(isinstance(line, StraightLine) for line in lines)
         keeps_speed, cosine = False, 1.0
         if are_lines and self.common is not None and self.first.motion.criteria[0] == "C_VEL":
-            leaving, joining = (curve.tool_path.tangents(np.zeros(1))[0] for curve in self.common)
+            (leaving,), (joining,) = (
+                curve.tool_path.tangents(np.zeros(1)) for curve in self.common
+            )
             lengths = float(np.linalg.norm(leaving) * np.linalg.norm(joining))
             keeps_speed = lengths > 0.0
             if keeps_speed:  # rounding may take it beyond 1
@@ -249,19 +250,18 @@ class _Corner:
         """
         (leaving,), _, _ = self.one.curve.rates(np.ones(1))
         (joining,), _, _ = self.other.curve.rates(np.zeros(1))
-        lengths = [0.0, 0.0]
+        velocity = self.tracks.limits.velocity
+        before, after = (
+            max(float((np.abs(rates) / velocity).max()), _TINY) for rates in (leaving, joining)
+        )
         if self.common is not None:
-            tangents = (
-                self.common[0].tool_path.tangents(np.ones(1)),
-                self.common[1].tool_path.tangents(np.zeros(1)),
-            )
+            one, other = (curve.tool_path for curve in self.common)
+            tangents = one.tangents(np.ones(1)), other.tangents(np.zeros(1))
             lengths = [float(np.linalg.norm(tangent)) for tangent in tangents]
-        if min(lengths) <= 0.0:
-            velocity = self.tracks.limits.velocity
-            seconds = (float((np.abs(r) / velocity).max()) for r in (leaving, joining))
-            lengths = [max(length, _TINY) for length in seconds]
-        off = np.abs(joining - leaving * lengths[1] / lengths[0]).max()
-        weights = zone.before * lengths[0], zone.after * lengths[1]
+            if all(lengths):
+                before, after = lengths
+        off = np.abs(joining - leaving * after / before).max()
+        weights = zone.before * before, zone.after * after
         return weights, bool(off <= _STRAIGHT * np.abs(joining).max())
 
     def _duration(self, transition: Transition) -> float:
@@ -302,10 +302,10 @@ def _parameter(curve_limits: CurveLimits) -> Cubics | None:
 
 def _junctions(transition: Transition) -> tuple[Junction, Junction]:
     """Return the junctions at both ends of a blend."""
-    leaving, joining = transition.rates(np.array([0.0, 1.0]))
-    gear_in, bend_in = 1.0 / leaving[0, 0], -leaving[1, 0] / leaving[0, 0] ** 3
-    gear_out, bend_out = joining[0, 1], joining[1, 1]
-    if abs(leaving[1, 0]) < _EVEN * leaving[0, 0]:
+    ((speed,), (bend,), _), _ = transition.rates(np.zeros(1))
+    _, ((gear_out,), (bend_out,), _) = transition.rates(np.ones(1))
+    gear_in, bend_in = 1.0 / speed, -bend / speed**3
+    if abs(bend) < _EVEN * speed:
         bend_in = 0.0
     if abs(bend_out) < _EVEN * gear_out:
         bend_out = 0.0

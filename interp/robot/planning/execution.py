@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from interp.robot.planning.junctions import SAME_CURVE, JoinedStretch, PathState
-from interp.robot.planning.profile import standing
+from interp.robot.planning.profile import steady
 from interp.robot.planning.schedule import braking, schedule
 from interp.robot.planning.timeline import Key, Leg, Section, Timeline
 
@@ -193,7 +193,7 @@ class PathExecution:
         self._timeline.cut(begins)
         queue = iter(profiles)
         for section, joined in entries:
-            profile = standing(0.0) if joined is None else next(queue)
+            profile = steady(0.0, 0.0) if joined is None else next(queue)
             stretch = section.limits.stretches[0] if joined is None else joined.stretch
             ends = begins + profile.duration
             self._timeline.append(Leg(section, stretch, profile, begins, ends))

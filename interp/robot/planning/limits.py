@@ -130,11 +130,7 @@ class CurveLimits:
 
     def between(self, start: float, end: float) -> tuple[Stretch, ...]:
         """Return the stretches of a part of the curve, cut at its ends."""
-        parts = (
-            stretch.between(start, end)
-            for stretch in self.stretches
-            if stretch.end > start and stretch.start < end
-        )
+        parts = (stretch.between(start, end) for stretch in self.stretches)
         return tuple(part for part in parts if part.end > part.start)
 
     def part(self, start: float, end: float) -> CurveLimits:

@@ -17,10 +17,9 @@ from interp.robot.planning.blend_zones import wants_blend
 from interp.robot.planning.plan import Passage, places_of
 from interp.robot.planning.timeline import APEX, MICROSECOND, Key, Section, Timeline, micros
 
-_ORDER: tuple[EventKind | None, ...] = (
-    *("motion_start", "blend_end", "place", "blend_start", "blend_apex"),
-    None,  # places that count from the end
-    "motion_end",
+_ORDER: tuple[EventKind, ...] = (
+    *("motion_start", "blend_end", "blend_start", "blend_apex"),
+    *("place", "motion_end"),
 )
 """What comes first of events of a motion at one time."""
 _HALVINGS = 30
@@ -64,7 +63,6 @@ def _events_of(passage: Passage, timeline: Timeline, now: int, stop_from: StopFr
         seconds: float | None,
         key: int | None = None,
         *,
-        is_of_end: bool = False,
         is_late: bool = False,
     ) -> None:
         if seconds is None or (kind, key) in passage.taken:
@@ -72,7 +70,7 @@ def _events_of(passage: Passage, timeline: Timeline, now: int, stop_from: StopFr
         time = max(micros(seconds), now)
         is_unwanted = kind == "motion_end" and out is None and wants_blend(motion)
         event = ArmEvent(time, kind, motion.number, key, is_unwanted, is_late)
-        found.append((time, motion.number, _ORDER.index(None if is_of_end else kind), event))
+        found.append((time, motion.number, _ORDER.index(kind), event))
 
     add("motion_start", clock.time(*passage.start))
     if into is not None:
@@ -82,8 +80,7 @@ def _events_of(passage: Passage, timeline: Timeline, now: int, stop_from: StopFr
         add("blend_apex", clock.time(out, APEX))
     add("motion_end", clock.time(*passage.end))
     for place, part in places_of(motion):
-        at_start = place.kind == "DISTANCE" and place.position == 0.0
-        add("place", clock.place(place, part), place.key, is_of_end=not at_start)
+        add("place", clock.place(place, part), place.key)
     for place, part in places_of(motion, is_stop=True):
         chance, is_late = clock.last_chance(place, part, now, stop_from)
         add("place", chance, place.key, is_late=is_late)
@@ -174,8 +171,8 @@ class _Clock:
         else:
             origin = sums[-1]
             if passage.out is not None:
-                origin -= ends[-1][1] - float(ways[-1].at(np.array([APEX]))[0])
+                origin -= ends[-1][1] - ways[-1].at(np.array([APEX])).item()
         wanted = float(np.clip(origin + place.position, 0.0, sums[-1]))
-        index = int(np.clip(np.searchsorted(sums, wanted, side="left") - 1, 0, len(sections) - 1))
-        u = float(ways[index].parameters(np.array([ends[index][0] + wanted - sums[index]]))[0])
+        index = max(int(np.searchsorted(sums, wanted)) - 1, 0)
+        u = ways[index].parameters(np.array([ends[index][0] + wanted - sums[index]])).item()
         return sections[index], u

@@ -189,15 +189,17 @@ class PlannedArm:
 
     def speed(self, time: int) -> float:
         """See `interp.robot.arm.Arm.speed`."""
-        leg = self._timeline.leg_at(time * MICROSECOND)
-        return 0.0 if leg is None else leg.tool_speed(time * MICROSECOND) / 1000.0
+        seconds = time * MICROSECOND
+        leg = self._timeline.leg_at(seconds)
+        return 0.0 if leg is None else leg.tool_speed(seconds) / 1000.0
 
     def distances(self, time: int) -> tuple[float, float]:
         """See `interp.robot.arm.Arm.distances`; 0 and 0 where no motion is on."""
-        leg = self._timeline.leg_at(time * MICROSECOND)
+        seconds = time * MICROSECOND
+        leg = self._timeline.leg_at(seconds)
         if leg is None:
             return 0.0, 0.0
-        section, u = leg.section, leg.state(time * MICROSECOND).u
+        section, u = leg.section, leg.state(seconds).u
         number = section.motion_at(u)
         for passage in self._plan.passages:
             if passage.number == number:
@@ -282,11 +284,11 @@ class PlannedArm:
 
     def _left_at(self, plan: Plan) -> Array:
         """Return the axes at which a plan was interrupted."""
-        ahead = self._execution.ahead(plan.sections, self._seconds)
-        if not ahead:
-            return plan.programmed.axes
-        axes: Array = ahead[0].curve.axes(np.array([self._execution.stood_at(ahead[0])]))[0]
-        return axes
+        axes: Array
+        for section in self._execution.ahead(plan.sections, self._seconds):
+            (axes,) = section.curve.axes(np.array([self._execution.stood_at(section)]))
+            return axes
+        return plan.programmed.axes
 
     @property
     def _is_braked(self) -> bool:

@@ -23,6 +23,10 @@ _EXACT = 1e-9
 _ROUNDS = 60
 _INSTANT = 1e-12  # seconds
 
+#: Duration in s, initial acceleration, and jerk.
+Piece = tuple[float, float, float]
+Pieces = tuple[Piece, ...]
+
 
 class SpeedProfile:
     """A sequence of cubics, each with its start: time, position, speed, acceleration, jerk.
@@ -30,8 +34,8 @@ class SpeedProfile:
     It begins at time 0 and position 0.
     """
 
-    def __init__(self, speed: float, pieces: Iterable[tuple[float, float, float]]) -> None:
-        """Create it from a speed and pieces of duration, initial acceleration, and jerk."""
+    def __init__(self, speed: float, pieces: Iterable[Piece]) -> None:
+        """Create it from the speed at its start, and its pieces."""
         time = position = last = 0.0
         knots: list[tuple[float, ...]] = []
         for duration, acceleration, jerk in pieces:
@@ -170,9 +174,13 @@ def stop(speed: float, acceleration: float, bounds: Bounds) -> SpeedProfile:
     return SpeedProfile(speed, _lasting(ramp(speed, acceleration, 0.0, bounds).pieces))
 
 
-def standing(duration: float) -> SpeedProfile:
-    """Return a profile without motion."""
-    return SpeedProfile(0.0, ((duration, 0.0, 0.0),))
+def steady(speed: float, length: float) -> SpeedProfile:
+    """Return the profile over a length at one speed; without a speed it takes no time."""
+    return SpeedProfile(speed, _at(speed, length))
+
+
+def _at(speed: float, length: float) -> Pieces:
+    return ((length / speed, 0.0, 0.0),) if speed > 0.0 else ()
 
 
 def _solved(
@@ -200,7 +208,7 @@ def _solved(
         return None
     if result not in (ruckig.Result.Working, ruckig.Result.Finished):
         return None
-    solved = trajectory.profiles[0][0]
+    ((solved,),) = trajectory.profiles
     pieces = [
         *zip(solved.brake.t, solved.brake.a, solved.brake.j, strict=True),
         *zip(solved.t, solved.a[:-1], solved.j, strict=True),
@@ -230,10 +238,10 @@ def _searched(
         ramps = parts(low)
     else:  # it brakes already, and all that is left over is travelled behind that
         low, ramps = target, (ramp(speed, acceleration, target, bounds, final), NO_RAMP)
-    rest = max(length - sum(part.distance for part in ramps), 0.0)
-    cruise = (rest / low if low > 0.0 else 0.0, 0.0, 0.0)
-    return SpeedProfile(speed, _lasting((*ramps[0].pieces, cruise, *ramps[1].pieces)))
+    up, down = ramps
+    cruise = _at(low, length - up.distance - down.distance)
+    return SpeedProfile(speed, _lasting((*up.pieces, *cruise, *down.pieces)))
 
 
-def _lasting(pieces: Iterable[tuple[float, float, float]]) -> Iterator[tuple[float, float, float]]:
+def _lasting(pieces: Iterable[Piece]) -> Iterator[Piece]:
     return (piece for piece in pieces if piece[0] > 0.0)

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from interp.robot.planning.junctions import JoinedStretch, PathState
-from interp.robot.planning.profile import SpeedProfile, stop, travel
+from interp.robot.planning.profile import SpeedProfile, steady, stop, travel
 from interp.robot.planning.ramps import Bounds, largest_speed, ramp, speed_after
 
 _SPARE = 1.0 - 1e-6
@@ -141,12 +141,9 @@ class Span:
     def profiles(self, speed: float, final: float) -> list[SpeedProfile]:
         """Return the profile of each stretch between the speeds at both ends of the span."""
         if self.is_constant:
-            pieces = ((self.length / speed, 0.0, 0.0),) if speed > 0.0 else ()
-            profile = SpeedProfile(speed, pieces)
-        else:
-            start, end = self._entry_acceleration(speed), self.exit_bend * final**2
-            profile = travel(self.length, speed, start, final, self.bounds, end)
-        return profile.split(self.ends) if len(self.ends) > 1 else [profile]
+            return [steady(speed, self.length)]
+        start, end = self._entry_acceleration(speed), self.exit_bend * final**2
+        return travel(self.length, speed, start, final, self.bounds, end).split(self.ends)
 
     def stop(self, speed: float) -> list[SpeedProfile] | None:
         """Return the profiles up to a stop within the span, or ``None`` if it is too short."""

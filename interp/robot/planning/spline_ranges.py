@@ -101,7 +101,7 @@ def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
     changed = list(pieces)
     for number in inside:
         length = _length(pieces[number])
-        low, high = (float(np.clip((x - ends[number]) / length, 0.0, 1.0)) for x in (start, end))
+        low, high = ((place - ends[number]) / length for place in (start, end))
         whole = pieces[number].limits
         within = []
         for stretch in whole.between(low, high):
@@ -150,7 +150,7 @@ def _timed(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
             groups.append(range(begins, mark.number))
             shares.append(wanted_range.value or 0.0)
             begins = mark.number
-        elif begins is not None and wanted_range.edge == "END":
+        elif begins is not None:
             if not groups:
                 groups, shares = [range(begins, mark.number)], [1.0]
             total = sum(shares) or 1.0

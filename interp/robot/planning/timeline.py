@@ -199,7 +199,7 @@ class Timeline:
         leg = self.leg_at(time)
         if leg is None:
             return self.start
-        axes: Array = leg.section.curve.axes(leg.at(np.array([time])))[0]
+        (axes,) = leg.section.curve.axes(leg.at(np.array([time])))
         return axes
 
     def sample(self, times: npt.NDArray[np.int64]) -> Samples:

@@ -289,9 +289,8 @@ class Tracks:
 
 def _turning(settings: Settings, start: Array, end: Array) -> Turning:
     """Return the orientation along a line; #CONSTANT keeps the one at the start [ORI-01]."""
-    if settings.orientation == "#CONSTANT":
-        return turning(start[:3, :3], start[:3, :3])
-    return turning(start[:3, :3], end[:3, :3])
+    first, last = (pose[:3, :3] for pose in (start, end))
+    return turning(first, first if settings.orientation == "#CONSTANT" else last)
 
 
 def _along_circle(settings: Settings, circle: Circle, start: Array, end: Array) -> Orientation:
@@ -299,13 +298,14 @@ def _along_circle(settings: Settings, circle: Circle, start: Array, end: Array) 
 
     The programmed end point has its orientation at its place on the circle [MOT-13].
     """
+    first, last = (pose[:3, :3] for pose in (start, end))
+    is_carried = settings.circle == "#PATH"
+    if is_carried:
+        (back,) = about(circle.normal, np.array([-circle.programmed]))
+        last = back @ last
     extent = circle.angle / circle.programmed
-    if settings.circle != "#PATH":
-        keeps = settings.orientation == "#CONSTANT"
-        return turning(start[:3, :3], start[:3, :3] if keeps else end[:3, :3], extent)
-    back = about(circle.normal, np.array([-circle.programmed]))[0]
-    other = start[:3, :3] if settings.orientation == "#CONSTANT" else back @ end[:3, :3]
-    return Carried(turning(start[:3, :3], other, extent), circle.normal, circle.angle)
+    turned = turning(first, first if settings.orientation == "#CONSTANT" else last, extent)
+    return Carried(turned, circle.normal, circle.angle) if is_carried else turned
 
 
 def _above(value: float, name: str) -> float:
