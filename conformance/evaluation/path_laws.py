@@ -12,8 +12,6 @@ import numpy.typing as npt
 from conformance.evaluation.observation import Event, Observation
 from conformance.evaluation.path_geometry import (
     RATE_MARGIN,
-    TOLERANCE_DEGREES,
-    TOLERANCE_MM,
     change_rates,
     from_circle,
     from_line,
@@ -27,6 +25,8 @@ Array = npt.NDArray[np.float64]
 
 #: The smallest number of rows of a path that is checked.
 _FEWEST: Final = 4
+#: mm of the tool and degrees of an axis by which rounding may put a set-point off its path.
+_NEAR_MM, _NEAR_DEGREES = 0.002, 0.0005
 _LIMITS: Final = "set-points keep the limits of the axes"
 
 
@@ -61,9 +61,7 @@ def _limit_violations(seen: Observation, path: PathRecord) -> Iterator[Violation
             yield _violation(seen, int(path.times[row]), _LIMITS, actual, rule)
     for column, one in enumerate(axes):
         places = path.axes[:, column]
-        outside = ~(
-            (places >= one.lower - TOLERANCE_DEGREES) & (places <= one.upper + TOLERANCE_DEGREES)
-        )
+        outside = ~((places >= one.lower - _NEAR_DEGREES) & (places <= one.upper + _NEAR_DEGREES))
         if outside.any():
             first = int(np.argmax(outside))
             actual = f"{one.name} stands at {places[first]:.3f}"
@@ -86,7 +84,7 @@ def _drift_violations(seen: Observation, path: PathRecord) -> Iterator[Violation
         elif since is not None and one.time is not None:
             rows = path.axes[(path.times >= since) & (path.times <= one.time)]
             most = float(np.ptp(rows, axis=0).max()) if len(rows) else 0.0
-            if not most <= TOLERANCE_DEGREES:
+            if not most <= _NEAR_DEGREES:
                 law = "the arm stands where no motion is under way"
                 yield Violation(one, law, f"an axis moves by {most:.4f} before it")
                 return
@@ -113,13 +111,13 @@ def _shape_violations(seen: Observation, path: PathRecord) -> Iterator[Violation
         match str(start.fields.get("motion_kind")).removesuffix("_REL"):
             case "LIN" | "SLIN":
                 off = float(from_line(points, points[0], points[-1]).max())
-                law, most, rule = "the path of a LIN is a line", TOLERANCE_MM, ""
+                law, most, rule = "the path of a LIN is a line", _NEAR_MM, ""
             case "CIRC" | "SCIRC":
                 off = _off_circle(points)
-                law, most, rule = "the path of a CIRC is a circle", TOLERANCE_MM, ""
+                law, most, rule = "the path of a CIRC is a circle", _NEAR_MM, ""
             case "PTP" | "SPTP":
                 off = from_synchronous(axes) or 0.0
-                law, most, rule = "the axes of a PTP are synchronous", TOLERANCE_DEGREES, "MOT-01.b"
+                law, most, rule = "the axes of a PTP are synchronous", _NEAR_DEGREES, "MOT-01.b"
             case _:
                 continue
         if not off <= most:

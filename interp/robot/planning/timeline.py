@@ -199,6 +199,7 @@ class Timeline:
         leg = self.leg_at(time)
         if leg is None:
             return self.start
+        axes: Array
         (axes,) = leg.section.curve.axes(leg.at(np.array([time])))
         return axes
 

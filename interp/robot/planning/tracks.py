@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -215,12 +215,11 @@ class Tracks:
 
     def programmed(self, settings: Settings) -> AxisLimits:
         """Return the limits scaled by percentages and by the reduction in T1 [MOT-02, MOT-07]."""
-        percent = settings.axis_velocity
+        percents = settings.axis_velocity, settings.axis_acceleration, settings.axis_jerk
+        limits = self.limits.carrying(settings.loads).scaled(*percents)
         if settings.is_reduced:
-            share = self.machine.t1_reduction
-            percent = tuple((p if 0.0 < p <= 100.0 else 100.0) * share for p in percent)
-        limits = self.limits.carrying(settings.loads)
-        return limits.scaled(percent, settings.axis_acceleration, settings.axis_jerk)
+            limits = replace(limits, velocity=limits.velocity * self.machine.t1_reduction)
+        return limits
 
     def paths(
         self,

@@ -193,6 +193,7 @@ def test_a_circle_passes_its_auxiliary_point() -> None:
 def test_a_path_keeps_speed_and_acceleration() -> None:
     """It does 0.05 m/s, and 0.2 m/s²; where it is too fast it takes too short a time too."""
     assert ("MOT-04", 8) in broken(settings_of(8, velocity=0.02))
+    assert ("MOT-04", 8) in broken(settings_of(8, velocity=0.0499))
     assert ("MOT-04", 8) in broken(settings_of(8, acceleration=0.1))
     assert [("", 8)] == broken(settings_of(8, velocity=0.055))
     assert [("", 9)] == broken(settings_of(9, velocity=0.055))

@@ -80,10 +80,10 @@ BULGE = np.sin(np.linspace(0.0, np.pi, COUNT))[:, None]
     ("kind", "points", "law"),
     [
         ("LIN", LINE, ""),
-        ("LIN_REL", LINE + BULGE * 0.2, "the path of a LIN is a line"),
+        ("LIN_REL", LINE + BULGE * 0.003, "the path of a LIN is a line"),
         ("SLIN", RING, "the path of a LIN is a line"),
         ("CIRC", RING, ""),
-        ("SCIRC", RING + BULGE**2 * (0.0, 0.0, 0.5), "the path of a CIRC is a circle"),
+        ("SCIRC", RING + BULGE**2 * (0.0, 0.0, 0.02), "the path of a CIRC is a circle"),
         ("SPLINE", RING + BULGE, ""),
     ],
 )
@@ -96,7 +96,7 @@ def _late() -> Observation:
     """A PTP of which one axis comes too late."""
     share = np.linspace(0.0, 1.0, COUNT)
     axes = STILL.copy()
-    axes[:, 0], axes[:, 5] = 20 * share, 10 * share**1.1
+    axes[:, 0], axes[:, 5] = 20 * share, 10 * share**1.0003
     return seen("PTP", axes=axes)
 
 
