@@ -63,6 +63,9 @@ SAME_TEXT_BONUS = 6
 #: A rule that has more than one in so many of all reserved words lists them. Measured: the same
 #: with 2.
 WORD_LIST_PART = 4
+#: A rule of words and names that has more than one in so many of all reserved words lists no types.
+#: Not measured.
+TYPE_LIST_PART = 2
 #: A symbol is usual where it has at least one in so many of the places of a kind. Measured: other
 #: proposals with 1.
 USUAL_PART = 3

@@ -5,6 +5,6 @@ defects that all executors share.
 """
 
 from conformance.metamorphic.law import Attempt, Law, run_law
-from conformance.metamorphic.trial import LAWS, LawResult, record_of, try_laws
+from conformance.metamorphic.law_trials import LAWS, LawResult, record_of, try_laws
 
 __all__ = ["LAWS", "Attempt", "Law", "LawResult", "record_of", "run_law", "try_laws"]

@@ -19,7 +19,7 @@ from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.motion_builder import MotionBuilder
 from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.requests.waits import Waits
-from interp.controller.state.interrupts import Interrupts
+from interp.controller.state.declared_interrupts import Interrupts
 from interp.controller.state.signals import Signals
 from interp.robot.kinematics.placement import Placement
 from interp.robot.path import programmed_targets

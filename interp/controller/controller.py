@@ -30,7 +30,7 @@ from interp.controller.requests.variable_access import VariableAccess
 from interp.controller.requests.waits import Waits
 from interp.controller.scheduler import HOUR, RunOutcome, Scheduler
 from interp.controller.spline_stops import SplineStops
-from interp.controller.state.interrupts import Interrupts, interrupt_list
+from interp.controller.state.declared_interrupts import Interrupts, interrupt_list
 from interp.controller.state.profile import Profile
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import LevelKind, Task

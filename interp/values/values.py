@@ -363,7 +363,7 @@ def fill(target: StructureValue | ArrayValue, value: Value) -> None:
     Between two pose types, or two axis types, the common components are copied, and the others
     lose their value. An array of one dimension receives as many elements as it can hold, and the
     rest of its elements lose their value; with more dimensions the sizes must be equal. Faults
-    ``inadmissible``.
+    ``inadmissible``. Twins: ``interp/bytecode/vm/arrays.py`` and ``array_operations.h`` in C.
     """
     match target, value:
         case StructureValue(), StructureValue():

@@ -15,8 +15,8 @@ from krl.terminal.output_files import write_json
 if TYPE_CHECKING:
     from grammar.notation.edits import Edit
     from grammar.notation.model import Grammar
-    from recovery.induction.comparison import Share
     from recovery.induction.induced_ledger import InducedLedger
+    from recovery.induction.target_comparison import Share
     from recovery.ledger.construct import Construct
     from recovery.negatives.negatives import Negative
 
@@ -52,9 +52,9 @@ def recover_auto(
     from grammar.notation.g4 import read_file
     from grammar.parser.lexer import ABSENT, lexer_of
     from recovery.induction.auto_record import record_of
-    from recovery.induction.comparison import compared
     from recovery.induction.corpus_lines import held_out
     from recovery.induction.rounds import Induction
+    from recovery.induction.target_comparison import compared
     from recovery.language import KRL, language_of
     from recovery.negatives.generate import evenly
     from recovery.negatives.negatives import NegativeSet

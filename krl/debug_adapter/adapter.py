@@ -1,4 +1,7 @@
-"""The requests of the Debug Adapter Protocol, given to the program or answered here."""
+"""The Debug Adapter Protocol: capabilities, start and stepping.
+
+Other requests are answered in `krl.debug_adapter.inspection` and `krl.debug_adapter.breakpoints`.
+"""
 
 import re
 from collections.abc import Mapping

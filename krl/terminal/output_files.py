@@ -1,4 +1,7 @@
-"""Output files of commands: checked in advance, written atomically."""
+"""JSON and other output files of commands: checked in advance, written atomically.
+
+Pages are written by `reports`.
+"""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""The rules of a grammar that read operands: values, names, types, and what only follows them."""
+"""Which rules of a grammar read operands, which list types, and what only follows operands."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from recovery.brackets import BRACKETS
 from recovery.forms.keywords import Vocabulary
 from recovery.forms.rule_matcher import RuleMatcher
 from recovery.forms.symbols import Operand
+from recovery.tuning import TYPE_LIST_PART
 
 
 class OperandRules:
@@ -49,8 +50,11 @@ class OperandRules:
         return having[0] if len(having) == 1 else None
 
     @cached_property
-    def word_choices(self) -> Mapping[str, frozenset[str]]:
-        """Rules that give a choice of words and names, as that of types does, with the words."""
+    def type_rules(self) -> Mapping[str, frozenset[str]]:
+        """Rules that list types, each with its words: words and names, but not most keywords.
+
+        Not `Vocabulary.word_lists`, the rules of nearly all keywords.
+        """
         vocabulary = Vocabulary(self.recognizer)
         within = [n for n in self._called if n in self.within_lines and n != self.names]
         found = {name: vocabulary.words_of(name) for name in within}
@@ -60,7 +64,7 @@ class OperandRules:
             name: words & some - self.named_words
             for name, some in found.items()
             # a list of most words says nothing of their kind
-            if lexer.name in some and 2 * len(words & some) <= len(words)
+            if lexer.name in some and TYPE_LIST_PART * len(words & some) <= len(words)
         }
 
     @cached_property
@@ -72,7 +76,7 @@ class OperandRules:
     @cached_property
     def type_words(self) -> frozenset[str]:
         """The words that some rule offers as an alternative to names."""
-        return frozenset[str]().union(*self.word_choices.values())
+        return frozenset[str]().union(*self.type_rules.values())
 
     @cached_property
     def type_kinds(self) -> frozenset[int]:
@@ -225,7 +229,7 @@ class OperandRules:
 
     @cached_property
     def _words_in_brackets(self) -> Mapping[int, frozenset[int]]:
-        skipped = {*self.recursive, *self.ladder, self.names, *self.word_choices}
+        skipped = {*self.recursive, *self.ladder, self.names, *self.type_rules}
         called = {name: some for name, some in self._called.items() if name not in skipped}
         kind_of, found = self.lexer.kind_of, defaultdict[int, set[int]](set)
         for _, sequence in (s for r in called for s in sequences(self.grammar.by_name[r])):

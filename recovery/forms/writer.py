@@ -43,7 +43,7 @@ class FormWriter:
     def _is_type(self, symbol: Symbol) -> bool:
         """Return whether an operand is a reserved word for a type, or the rule of types."""
         operand = symbol.operand or Operand()
-        is_rule = operand.rule in self.rules.word_choices
+        is_rule = operand.rule in self.rules.type_rules
         return is_rule or self.cover.reserved_word(operand) in self.rules.type_words
 
     # ------------------------------------------------------------------------------------- lists

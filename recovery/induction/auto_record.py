@@ -30,7 +30,7 @@ def record_of(
 
     ``start`` is the name of the grammar at the start, ``taken_out`` are the constructs that it
     lacks, ``held_out`` the origins that were not shown. ``target`` compares the result with another
-    grammar (`recovery.induction.comparison`).
+    grammar (`recovery.induction.target_comparison`).
     """
     record: dict[str, Any] = {
         "start": start,

@@ -39,7 +39,7 @@ def words_as_types(view: GrammarView) -> Iterator[InferredStep]:
                 if place and shape[place + 1].is_operand:
                     found[one].add((rule.name, *texts[:place], *texts[place + 2 : place + 3]))
                     longer.update(one for s in shape[place + 2 : place + 3] if s.is_operand)
-    for choice in view.rules.word_choices:
+    for choice in view.rules.type_rules:
         for word in sorted(view.reserved & found.keys() - longer):
             if found[word] <= found[choice]:
                 title = f"{word} is one of {choice}"
@@ -196,5 +196,5 @@ def _is_inner(view: GrammarView, rule: Rule) -> bool:
 def _is_kind(view: GrammarView, element: Element) -> bool:
     """Return whether an element is the type in front of a declared name."""
     words = view.words(element)
-    is_choice = isinstance(element, Reference) and element.name in view.rules.word_choices
+    is_choice = isinstance(element, Reference) and element.name in view.rules.type_rules
     return is_choice or bool(words and words <= view.types)

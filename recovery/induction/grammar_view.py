@@ -42,7 +42,7 @@ class GrammarView:
         self.profile = GrammarProfile(recognizer)
         self.writer = FormWriter(SymbolReader(self.rules), operands)
         self.types = (self.rules.type_words | self.rules.named_words) - {self.lexer.name}
-        self.kind = f"{next(iter(self.rules.word_choices), '')}Word"
+        self.kind = f"{next(iter(self.rules.type_rules), '')}Word"
 
     @cached_property
     def reserved(self) -> frozenset[str]:

@@ -136,7 +136,7 @@ class OperandEdits:
             if not is_led and not self.at.ends_operand(tokens, index):
                 found[lexer.names[kind]].append(number)
             for place in () if is_led or not self.at.rules.names else self._name_places(number):
-                if place[0] not in self.at.rules.word_choices:
+                if place[0] not in self.at.rules.type_rules:
                     placed[place][lexer.names[kind]].append(number)
         for word, members in found.items():
             if self.at.rules.names:
@@ -153,7 +153,7 @@ class OperandEdits:
     def _words_as_types(self) -> Iterator[InferredStep]:
         """Return reserved words in front of a name, if a rule has a choice of words and names."""
         found: dict[tuple[str, str], list[int]] = defaultdict(list)
-        lexer, choices = self.at.lexer, self.at.rules.word_choices
+        lexer, choices = self.at.lexer, self.at.rules.type_rules
         for number, line in enumerate(self.at.lines):
             tokens, index = self.at.tokens[number], line.form.index
             if not index or line.is_enormous or index + 1 >= len(tokens):

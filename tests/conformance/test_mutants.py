@@ -28,7 +28,7 @@ from conformance.sensitivity.trial import (
     try_faults,
 )
 from conformance.suite.case import CASES, Case, read_case
-from interp.controller.state import clock, interrupts
+from interp.controller.state import clock, declared_interrupts
 from interp.tree import statements as tree_statements
 from interp.values import operators
 
@@ -160,13 +160,13 @@ def test_functions_in_tables_are_changed_too() -> None:
 
 def test_module_level_names_are_changed_wherever_they_are() -> None:
     """The modules that use the name have another value, for as long as the context lasts."""
-    mutant = _mutant("interp.controller.state.interrupts", "_RANGES", "40", "41")
-    assert not interrupts.is_usable(40)
+    mutant = _mutant("interp.controller.state.declared_interrupts", "_RANGES", "40", "41")
+    assert not declared_interrupts.is_usable(40)
     with mutant.plant():
-        assert interrupts.is_usable(40)
-    assert not interrupts.is_usable(40)
-    uses = uses_of(mutant)["interp.controller.state.interrupts"]
-    text = Path(str(interrupts.__file__)).read_text(encoding="utf-8").splitlines()
+        assert declared_interrupts.is_usable(40)
+    assert not declared_interrupts.is_usable(40)
+    uses = uses_of(mutant)["interp.controller.state.declared_interrupts"]
+    text = Path(str(declared_interrupts.__file__)).read_text(encoding="utf-8").splitlines()
     assert all("_RANGES" in text[line - 1] for line in uses)
 
 

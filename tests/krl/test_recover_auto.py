@@ -14,9 +14,9 @@ from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from krl.cli import main
-from recovery.induction import comparison
-from recovery.induction.comparison import compared, within_reach
+from recovery.induction import target_comparison
 from recovery.induction.induced_ledger import without, without_some
+from recovery.induction.target_comparison import compared, within_reach
 from recovery.language import KRL
 from recovery.ledger.ledger import Ledger, in_force
 
@@ -61,8 +61,8 @@ def out(corpus: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("out")
     options = ("--hold-out", "0.33", "--seed", "3", "--target", GRAMMAR)
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(comparison, "_SENTENCES", 200)
-        patched.setattr(comparison, "_NEGATIVES", 2_000)
+        patched.setattr(target_comparison, "_SENTENCES", 200)
+        patched.setattr(target_comparison, "_NEGATIVES", 2_000)
         assert auto(corpus, *options, "--out", folder) == 0
     return folder
 
@@ -123,8 +123,8 @@ def test_constructs_are_drawn_and_taken_out(seed: int) -> None:
 
 def test_what_the_target_rejects_is_counted(corpus: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Most sentences of a wider grammar are none of a narrow target, which reads no file here."""
-    monkeypatch.setattr(comparison, "_SENTENCES", 200)
-    monkeypatch.setattr(comparison, "_NEGATIVES", 100)
+    monkeypatch.setattr(target_comparison, "_SENTENCES", 200)
+    monkeypatch.setattr(target_comparison, "_NEGATIVES", 100)
     found = compared(read_file(GRAMMAR), read_file(PRELIMINARY), KRL.files([corpus]), ())
     assert {"count": 0, "of": 0} == found["shown"]
     assert 100 < found["sentences_rejected"]["count"] < 200

@@ -12,14 +12,15 @@ import recovery
 from recovery import tuning
 
 FOLDER = Path(recovery.__file__).parent
+#: Modules that only report what was found.
+REPORTS = ("auto_record", "induced_ledger", "target_comparison")
 HEURISTIC = [
     *(FOLDER / "survey" / name for name in ("suspected_keywords.py", "unreserved_keywords.py")),
     *(
         path
         for folder in ("proposals", "clustering", "reproducer", "induction")
         for path in sorted((FOLDER / folder).rglob("*.py"))
-        if path.stem
-        not in ("auto_record", "comparison", "induced_ledger")  # what is told, not what is found
+        if path.stem not in REPORTS
     ),
 ]
 BASES = re.compile(r"\b(?:bound|revised: \d|not measured|measured: |looks through)", re.IGNORECASE)

@@ -1,4 +1,4 @@
-"""Summaries of routines: what callers can know without the statements of the called routine.
+"""Summaries of routines: what callers can know, and findings that rest on it, over all files.
 
 Each routine is summarised once, when its file is checked. The summary says what happens to its
 parameters: whether a parameter is read before it is assigned, whether it is assigned, which values

@@ -22,7 +22,7 @@ from grammar.check.names.open_constants import OpenConstant, misspelt_constants,
 from grammar.check.names.open_names import open_names
 from grammar.check.names.project_names import of_project as of_names
 from grammar.check.names.unresolved_name import Files, UnresolvedName
-from grammar.check.structure import folds, misplaced_statements, splines
+from grammar.check.structure import misplaced_statements, splines, unbalanced_folds
 from grammar.check.types import declarations, initial_values, statements, undeclared_kinds
 from grammar.check.types.missing_arguments import OpenCall, missing_arguments, open_calls
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
@@ -54,7 +54,7 @@ CHECKS: tuple[Check, ...] = (
     value_limits.check,
     entry_points.check,
     data_flow.check,
-    folds.check,
+    unbalanced_folds.check,
 )
 
 

@@ -1,4 +1,4 @@
-"""The operator: START, STOP, CONFIRM, and what waits for these buttons."""
+"""The buttons START, STOP and CONFIRM: what each does, and which programs wait for them."""
 
 from __future__ import annotations
 

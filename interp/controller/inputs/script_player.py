@@ -1,4 +1,7 @@
-"""The player of input scripts: it performs each step at its time, or when its cause happens."""
+"""The player of input scripts: it performs each step at its time, or when its cause happens.
+
+It also knows whether the script may still press a button, for which a HALT waits.
+"""
 
 from __future__ import annotations
 

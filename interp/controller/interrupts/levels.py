@@ -11,7 +11,7 @@ from __future__ import annotations
 from interp.controller.motion.arm_control import ArmControl
 from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.motion.positions import Positions
-from interp.controller.state.interrupts import Interrupt
+from interp.controller.state.declared_interrupts import Interrupt
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import ALWAYS, Answer, Blocked, Level, LevelKind, Task
 from interp.port.requests import At, CodeHandle, End, SwitchSignal

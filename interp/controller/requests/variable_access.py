@@ -6,7 +6,7 @@ from interp.controller.inputs.automatic_inputs import AutomaticInputs
 from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.state.clock import microseconds
-from interp.controller.state.interrupts import module_name
+from interp.controller.state.declared_interrupts import module_name
 from interp.controller.state.predefined_values import word
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Task

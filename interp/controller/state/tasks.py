@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import field
 from typing import Final, Literal
 
-from interp.controller.state.interrupts import Interrupt, Interrupts
+from interp.controller.state.declared_interrupts import Interrupt, Interrupts
 from interp.controller.state.trace import TaskName, TaskSink
 from interp.port.executor import Executor, Reader, RecurrenceDetecting, StatementCounting
 from interp.port.requests import At, CodeHandle, Request, SetTrigger, SwitchSignal, Value

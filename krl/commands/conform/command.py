@@ -113,7 +113,7 @@ def conform(
         if parser:
             raise InputError("--parser belongs to krl conform compare")
         if metamorphic is not None:
-            from krl.commands.conform.laws import check_laws
+            from krl.commands.conform.metamorphic import check_laws
 
             return check_laws(_cases(words), metamorphic, json_file, jobs, scheduler)
         if fault is None or list_ or words[:1] in (["import"], ["export"]):
