@@ -9,7 +9,7 @@ from interp.port.events import ExecutorEvent
 from interp.port.executor import Executor
 from interp.port.requests import End, Fail, Halt, Slice
 from interp.program.load import Limits
-from interp.values.faults import BudgetExhausted, Fault, LinkError
+from interp.values.faults import BudgetExhausted, LinkError
 
 Make = Callable[..., Executor]
 Run = Callable[..., Any]
@@ -17,14 +17,6 @@ Run = Callable[..., Any]
 
 def body(text: str, declarations: str = "INT I,J,N") -> str:
     return f"DEF main()\n{declarations}\n{text}\nEND\n"
-
-
-def test_switch(go: Run) -> None:
-    """One CASE at most is chosen, there is no fall-through, DEFAULT takes the rest [CTL-04]."""
-    switch = "SWITCH I\nCASE 1,2\nN=10\nCASE 3\nN=30\nDEFAULT\nN=99\nENDSWITCH\n"
-    ran = go(body(f"FOR I=1 TO 4\n{switch}ENDFOR"))
-    assert [10, 10, 30, 99] == ran.values("N")
-    assert [1, 1, 2, 0] == [event.way for event in ran.events_of("branch")]
 
 
 def test_endless_recursion(go: Run) -> None:
@@ -86,17 +78,6 @@ def test_ended_stays_ended(make: Make, text: str, kind: type) -> None:
     last = executor.advance()
     assert isinstance(last, kind)
     assert last is executor.advance()
-
-
-def test_fault_is_no_traceback(go: Run) -> None:
-    """A fault is told with the place where it happened."""
-    ran = go(body("I=0\nJ=1/I"))
-    assert isinstance(ran.last.fault, Fault)
-    assert ("division_by_zero", 4, "main.src") == (
-        ran.last.fault.slug,
-        ran.last.at.line,
-        ran.last.at.file,
-    )
 
 
 def test_deepest_nesting(go: Run) -> None:

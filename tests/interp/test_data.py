@@ -73,23 +73,6 @@ def test_full_stack_is_noted(go: Run) -> None:
     assert [1] == ran.values("I")
 
 
-def test_varstate(go: Run) -> None:
-    """VARSTATE sees parts and what is declared nowhere [TYP-18]."""
-    text = 'V=VARSTATE("A[2]")\nA[2]=1\nV=VARSTATE("a[2]")\nV=VARSTATE("A[9]")\nV=VARSTATE("QQ")'
-    ran = go(body(text, "INT A[3]\nDECL VAR_STATE V"))
-    assert "[#DECLARED, #INITIALIZED, #UNKNOWN, #UNKNOWN]" == repr(ran.values("V"))
-
-
-def test_imports(go: Run) -> None:
-    """An import is the other list's variable itself [ADV-05]."""
-    ran = go(
-        "DEF main()\nMINE=MINE+1\nEND\n",
-        main_dat="DEFDAT main\nIMPORT INT MINE IS /R1/other..THEIRS\nENDDAT\n",
-        other_dat="DEFDAT other PUBLIC\nINT THEIRS=41\nENDDAT\n",
-    )
-    assert [42] == ran.values("THEIRS")
-
-
 def test_signals(go: Run) -> None:
     """A signal is the input or output it stands for; several bits are asked for at once."""
     ran = go(

@@ -21,7 +21,6 @@ from grammar.parser.lexer_automaton import (
     pattern_of,
 )
 
-ASCII = (0, 127)
 RANGES = st.lists(
     st.tuples(st.integers(0, 400), st.integers(0, 60)).map(lambda p: (p[0], p[0] + p[1])),
     min_size=1,

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.notation.edits import AddAlternative, AddToken, apply
-from grammar.notation.g4 import read, read_file
+from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.notation.wellformed import problem
@@ -31,11 +31,6 @@ Way = tuple[int, tuple[int, ...]]
 
 MANY = st.randoms(use_true_random=True)
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
-TOKENS = "A : 'a' ;\nB : 'b' ;\nC : 'c' ;\nNEWLINE : '\\n' ;\n"
-
-
-def grammar_of(rules: str) -> Grammar:
-    return read(f"grammar T;\n{rules}\n{TOKENS}")
 
 
 def accepts(network: Network, tokens: list[str]) -> int | None:

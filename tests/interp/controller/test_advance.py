@@ -21,10 +21,7 @@ def program(*lines: str, declarations: str = "", more: str = "") -> str:
 STOPPING = {
     "ANIN OFF": "ANIN OFF $ANIN[1]",
     "DIGIN OFF": "DIGIN OFF $DIGIN1",
-    "$ANOUT": "X=$ANOUT[1]",
     "$ACT_EX_AX": "$ACT_EX_AX=1",
-    "$AXIS_BACK": "X=$AXIS_BACK.A1",
-    "$LOAD_A1": "X=$LOAD_A1.M",
     "COPEN": "COPEN(:SER_1,I)",
 }
 PLAIN = {
@@ -62,16 +59,3 @@ def test_frames_at_the_start(go: Go) -> None:
     assert [] == go(program("LIN {X 1}"), profile=profile).messages()
     profile = replace(profile, values={**profile.values, "$TOOL": False})
     assert [1419] == go(program("LIN {X 1}"), profile=profile).messages()
-
-
-def test_coincidence_run(go: Go) -> None:
-    """A profile can have the first motion as a block coincidence run: it ends exactly [ADV-14]."""
-    profile = replace(Profile.load(), runs_coincidence=True)
-    text = program("B=$MOVE_BCO", "CONTINUE", "$OUT[1]=TRUE", "PTP {A1 1}", declarations="BOOL B\n")
-    ran = go(text, profile=profile)
-    assert [(0.0, 309), (1.0, 1350)] == [
-        (one.time / 1e6, one.fields["number"]) for one in ran.events_of("message")
-    ]
-    assert [(1.0, 1, True)] == ran.outputs()
-    assert False is ran.last("B")
-    assert [(0.0, 1, True)] == go(text).outputs()

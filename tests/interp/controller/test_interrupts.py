@@ -49,15 +49,6 @@ def test_interrupt_behind_the_last_line_of_a_routine(go: Go) -> None:
     assert "end" == ran.outcome.ending
 
 
-SEARCH = program(
-    "INTERRUPT DECL 10 WHEN $IN[1] DO FOUND()\n" + HOME + "INTERRUPT ON 10\nSEARCH()\n"
-    "INTERRUPT OFF 10\nI=I+1\nPTP {A1 5}\n",
-    "DEF SEARCH()\nPTP {A1 100}\nWAIT SEC 0\n$OUT[9]=TRUE\nEND\n"
-    "DEF FOUND()\nBRAKE\nRESUME\n$OUT[8]=TRUE\nEND\n",
-    "INT I\nI=0\n",
-)
-
-
 def test_an_interrupt_that_waits_for_a_resume(go: Go) -> None:
     """What came before a RESUME is entered behind it, and the program goes on where that leads."""
     text = program(

@@ -76,8 +76,6 @@ PROGRAM = load(
 )
 SCRIPT = Script.read("t=0.3 IN[1]=TRUE", "script")
 PREPARED = Prepared(PROGRAM)
-#: More statements than the program has.
-MANY = 250
 
 Commands = Iterator[Command]
 

@@ -80,19 +80,6 @@ def test_braking_stays_on_the_path(moving: Driver, after: int, is_hard: bool) ->
     moving.check_limits()
 
 
-def test_the_hard_ramp_is_shorter(moving: Driver) -> None:
-    """BRAKE F stops sooner than BRAKE."""
-    moving.play(until=moving.now + 300_000)
-    mark, begin, times = moving.arm.mark(), moving.now, []
-    for is_hard in (False, True):
-        moving.arm.brake(begin, is_hard)
-        event = moving.arm.next_event()
-        assert event is not None
-        times.append(event.time - begin)
-        moving.arm.rewind(mark)
-    assert times[1] < 0.8 * times[0]
-
-
 def test_braking_at_rest(driver: Driver) -> None:
     """An arm that stands is told to have stopped at once."""
     driver.move("PTP", FIRST)

@@ -56,32 +56,6 @@ def test_a_status_selects_its_way(make_arm: MakeArm, status: int) -> None:
 WIDE = (("N", -180.0), ("P", 180.0))
 
 
-@pytest.mark.parametrize("status", [2 + 8, 2 + 16, 2 + 8 + 16])
-def test_bits_without_a_meaning(arm: Kinematics, status: int) -> None:
-    """Bit 4 marks an absolutely accurate robot, and selects nothing [POS-06]."""
-    assert solve(arm, flange(arm, AXES), status=2) == solve(arm, flange(arm, AXES), status=status)
-
-
-@pytest.mark.parametrize(("turn", "a6"), [(0b000010, 310.0), (0b100010, -50.0)])
-def test_turn_selects_the_whole_turn(arm: Kinematics, turn: int, a6: float) -> None:
-    """The bit of an axis that turns beyond 360 degrees says which way round it is [POS-07]."""
-    found = solve(arm, flange(arm, AXES), status=2, turn=turn)
-    assert (*AXES[:5], a6) == pytest.approx(found.axes)
-    assert turn == found.turn
-
-
-def test_turn_of_an_axis_that_has_no_choice(arm: Kinematics) -> None:
-    """Where an axis reaches a point only once, its bit changes nothing [POS-12]."""
-    assert AXES == pytest.approx(solve(arm, flange(arm, AXES), status=2, turn=0b110111).axes[:6])
-
-
-@pytest.mark.parametrize(("start", "a6"), [(-60.0, -50.0), (200.0, 310.0), (0.0, -50.0)])
-def test_without_turn_the_way_is_short(arm: Kinematics, start: float, a6: float) -> None:
-    """Without a Turn each axis takes the shortest way from the start [POS-02]."""
-    found = solve(arm, flange(arm, AXES), status=2, start=(*AXES[:5], start))
-    assert a6 == pytest.approx(found.axes[5])
-
-
 @pytest.mark.parametrize("noise", [0.0, 1e-12, -1e-12])
 def test_half_a_turn_is_positive(arm: Kinematics, noise: float) -> None:
     """Half a turn either way is as short, and rounding has no say in it."""
@@ -93,16 +67,6 @@ def test_turn_has_a_bit_for_each_negative_axis() -> None:
     """Bit 0 is for axis 1; zero is not negative, nor what rounding makes of it [POS-07]."""
     assert 0b010011 == turn_of([-1, -2, 3, 4, -5, 6])
     assert 0 == turn_of([0.0, -0.0, -1e-9, 0.0, 0.0, 0.0])
-
-
-@pytest.mark.parametrize(
-    ("preference", "a5"), [(TargetStatus.SOURCE, 40.0), (TargetStatus.BEST, -40.0)]
-)
-def test_without_status(arm: Kinematics, preference: TargetStatus, a5: float) -> None:
-    """The Status is that of the start, or of the way that is done soonest [POS-09]."""
-    start = (20.0, -80.0, 100.0, -150.0, 1.0, 130.0)
-    found = solve(arm, flange(arm, AXES), start=start, preference=preference)
-    assert a5 == pytest.approx(found.axes[4])
 
 
 def test_the_leading_axis_counts(make_arm: MakeArm) -> None:
@@ -135,13 +99,6 @@ def test_a_way_that_does_not_exist(arm: Kinematics) -> None:
     assert 1366 == caught.value.number
 
 
-def test_behind_a_limit_switch(arm: Kinematics) -> None:
-    """A pose reached only beyond a software limit is message 1447, with the axis [MOT-15]."""
-    with pytest.raises(Fault, match="A1 at 175, not within -170 to 170") as caught:
-        solve(arm, flange(arm, (175, *AXES[1:])), status=2)
-    assert 1447 == caught.value.number
-
-
 def test_axis_targets_have_limits_too(arm: Kinematics) -> None:
     """Axes that are given by a program are held against the same limits."""
     check_limits(arm.machine.axes, HOME)
@@ -168,20 +125,6 @@ def test_the_wrist_singularity(
     assert expected == singularities(arm, axes)
 
 
-def test_the_other_singularities(arm: Kinematics) -> None:
-    """A stretched arm, and a wrist above axis 1, are singular as well [POS-08]."""
-    stretched = (0.0, -60.0, arm.machine.elbow, 0.0, 40.0, 0.0)
-    assert (Singularity.EXTENDED,) == singularities(arm, stretched)
-    assert (Singularity.OVERHEAD,) == singularities(arm, above_axis_1(arm, 30.0))
-
-
-def above_axis_1(arm: Kinematics, a1: float) -> tuple[float, ...]:
-    machine = arm.machine
-    forearm = math.hypot(*machine.tx3p3.position)
-    level = (machine.length_b / 2 - machine.length_a) / forearm
-    return (a1, -120.0, 120 + machine.elbow - math.degrees(math.acos(level)), 10.0, 20.0, 30.0)
-
-
 @pytest.mark.parametrize(("keep", "a4", "a6"), [(0, 0.0, 80.0), (1, 25.0, 55.0)])
 @pytest.mark.parametrize("a5", [0.0, 0.01])
 def test_a_target_with_a_straight_wrist(
@@ -203,16 +146,6 @@ def test_a_straight_wrist_has_either_status(arm: Kinematics, bit: int) -> None:
     assert HOME == pytest.approx(solve(arm, flange(arm, HOME), status=2 | bit).axes, abs=1e-9)
 
 
-@pytest.mark.parametrize(("keep", "a1"), [(0, 0.0), (1, 70.0)])
-def test_a_target_above_axis_1(make_arm: MakeArm, keep: int, a1: float) -> None:
-    """With the wrist on axis 1 that axis goes to 0 or stays, and the pose is met [POS-08]."""
-    arm = make_arm(f"$SINGUL_POS[1]={keep}")
-    target = flange(arm, above_axis_1(arm, 30.0))
-    found = ptp_target(arm, target, (70, -90, 90, 0, 60, 0), status=2)
-    assert a1 == pytest.approx(found.axes[0])
-    assert np.allclose(target.rows, flange(arm, found.axes).rows, rtol=0, atol=1e-9)
-
-
 def path(arm: Kinematics, first: tuple[float, ...], last: tuple[float, ...], count: int) -> Array:
     """Poses along a way through axis space, and nothing said of the axes."""
     return arm.forward(np.linspace(first, last, count))
@@ -224,23 +157,6 @@ def test_a_path_keeps_its_way(arm: Kinematics) -> None:
     expected = np.linspace(first, last, 200)
     assert np.allclose(expected, follow(arm, arm.forward(expected), first), rtol=0, atol=1e-7)
     assert (0, 6) == follow(arm, np.empty((0, 4, 4)), first).shape
-
-
-@pytest.mark.parametrize("count", [50, 51])
-def test_a_path_through_a_straight_wrist(arm: Kinematics, count: int) -> None:
-    """A wrist that straightens on the way bends to the other side, and axis 4 stays."""
-    first, last = (20.0, -80.0, 100.0, 30.0, 10.0, 50.0), (25.0, -78.0, 99.0, 30.0, -10.0, 50.0)
-    expected = np.linspace(first, last, count)
-    assert np.allclose(expected, follow(arm, arm.forward(expected), first), rtol=0, atol=1e-6)
-
-
-def test_a_path_out_of_reach(arm: Kinematics) -> None:
-    """The path ends where the arm does, with the message for it."""
-    poses = np.array([Pose.of(x, 0, 800, b=90).matrix for x in np.linspace(500, 1500, 100)])
-    start = solve(arm, Pose.from_matrix(poses[0].tolist()), status=2).axes
-    with pytest.raises(Fault) as caught:
-        follow(arm, poses, start)
-    assert 1366 == caught.value.number
 
 
 def test_a_path_beyond_a_limit_switch(arm: Kinematics) -> None:

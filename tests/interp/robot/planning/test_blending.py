@@ -55,12 +55,6 @@ def corners(section: Section) -> np.typing.NDArray[np.float64]:
     return np.array([leaves, point, joins])
 
 
-def ahead(driver: Driver) -> tuple[int, int]:
-    """When the only blend starts and ends, in µs."""
-    legs = [leg for leg in driver.arm.path() if leg.section.following]
-    return int(1e6 * legs[0].begins) + 1, int(1e6 * legs[-1].ends)
-
-
 def test_a_blend_of_lines_is_nearly_a_parabola(driver: Driver) -> None:
     """Where nothing is gained otherwise, it has the ends of one and keeps 0.12 mm to it."""
     corner(driver, ("C_DIS",), 0.2, cdis=40.0)
@@ -162,8 +156,7 @@ def test_mixed_blends(driver: Driver, kinds: tuple[str, str]) -> None:
     (rates, bends, _), zone = curve.rates(np.array([0.0, 1.0])), curve.transition
     leaving, leaving_bend, _ = curve.first.rates(np.array([1.0 - zone.before]))
     joining, joining_bend, _ = curve.second.rates(np.array([zone.after]))
-    (one, _), (other, _) = zone.rates(np.array([0.0])), zone.rates(np.array([1.0]))
-    other = zone.rates(np.array([1.0]))[1]
+    one, other = zone.rates(np.array([0.0]))[0], zone.rates(np.array([1.0]))[1]
     assert np.allclose(rates, [one[0] * leaving[0], other[0] * joining[0]])
     one_bend = one[0] ** 2 * leaving_bend[0] + one[1] * leaving[0]
     other_bend = other[0] ** 2 * joining_bend[0] + other[1] * joining[0]
