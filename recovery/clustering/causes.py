@@ -23,7 +23,6 @@ from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
 from recovery.clustering.edit_merging import (
     are_one_change,
-    choices,
     combined_edits,
     merged_as_choice,
     merged_as_form,
@@ -33,6 +32,7 @@ from recovery.clustering.file_trial import FileTrial
 from recovery.clustering.reason import Reason
 from recovery.clustering.regression import ParsedFiles, no_parsed_files
 from recovery.clustering.search import CauseSearch
+from recovery.forms.parts import choices
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
@@ -146,7 +146,8 @@ def merged_by_reason(
 ) -> list[Cause]:
     """Return the causes; those most of whose lines fail for the same reason are merged.
 
-    After that, those are for which the same rule gets alternatives that nothing calls.
+    After that, those are that need the same words, or for which the same rule gets alternatives
+    that nothing calls.
     The proposals of a merged cause are sorted by what they repair of all its lines.
     """
     alike: dict[Reason | int, list[Cause]] = defaultdict(list)
@@ -156,10 +157,17 @@ def merged_by_reason(
             count[reasons[n]] += search.weights[n]
         alike[max(count, key=lambda r: (count[r], r), default=place)].append(cause)
     united = [_united(search, several) for several in alike.values()]
-    missing: dict[str | int, list[Cause]] = defaultdict(list)
-    for place, cause in enumerate(united):
-        missing[_gathers_again(search, cause) or place].append(cause)
+    missing: dict[str | frozenset[str] | int, list[Cause]] = defaultdict(list)
+    for place, (reason, cause) in enumerate(zip(alike, united, strict=True)):
+        missing[_gathers_again(search, cause) or _words_for(reason, cause) or place].append(cause)
     return [_united(search, several) for several in missing.values()]
+
+
+def _words_for(reason: Reason | int, cause: Cause) -> frozenset[str]:
+    """Return the words that a cause needs; none if its lines fail at another new word."""
+    words = frozenset[str]().union(*map(_words, cause.proposals[:1]))
+    is_other = isinstance(reason, tuple) and reason[0] == "word" and reason[1] not in words
+    return frozenset() if is_other else words
 
 
 def _gathers_again(search: CauseSearch, cause: Cause) -> str:
@@ -173,11 +181,9 @@ def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
     if len(causes) == 1:
         return causes[0]
     lines = frozenset(n for cause in causes for n in cause.lines)
-    worth = partial(_worth, search, lines)
     found = list(dict.fromkeys(p for cause in causes for p in cause.proposals))
     found += _gathered(search, found, lines)
-    best = sorted(found, key=lambda p: (p.accepts_negatives, -worth(p)))
-    return Cause(tuple(sorted(lines)), tuple(best[:MOST_PROPOSALS]))
+    return Cause(tuple(sorted(lines)), tuple(search.ranked(found, lines)[:MOST_PROPOSALS]))
 
 
 def _worth(search: CauseSearch, lines: frozenset[int], proposal: Proposal) -> float:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, Widen
-from recovery.forms.parts import parts
+from recovery.forms.parts import choices, parts, unwrapped
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import MOST_MERGED_EDITS
@@ -92,7 +92,7 @@ def merged_as_choice(
         edit = candidate.edits[-1]
         if not isinstance(edit, Insert | Widen | AddAlternative):
             continue
-        words = parts(edit.text.strip("()?*") if isinstance(edit, Insert) else edit.text)
+        words = parts(unwrapped(edit.text) if isinstance(edit, Insert) else edit.text)
         place = () if isinstance(edit, AddAlternative) else edit.at
         for i, word in enumerate(words):
             if allowed(edit, i):
@@ -104,11 +104,6 @@ def merged_as_choice(
         for family, members in families.items()
         if len(members) > 1
     ]
-
-
-def choices(word: str) -> list[str]:
-    """Return the words of a choice in parentheses, or the single word."""
-    return word[1:-1].split(" | ") if word[0] == "(" and word[-1] == ")" else [word]
 
 
 def _chosen(left: object, right: object, members: dict[str, Candidate]) -> Candidate:

@@ -7,7 +7,9 @@ name, a first word that no line has there, or a sign inside a kind of brackets.
 
 from __future__ import annotations
 
+from grammar.notation.model import reached
 from grammar.parser.failures import FailureContext
+from grammar.parser.network import Network
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.keywords import Vocabulary
 from recovery.forms.rule_matcher import RuleMatcher
@@ -29,6 +31,7 @@ class ReasonFinder:
         self._lexer = recognizer.lexer
         self._kind_of_word = Vocabulary(recognizer).kinds_of_words
         self._matcher = RuleMatcher(recognizer)
+        self._read = self._kinds_read(recognizer.network, recognizer.grammar.start)
 
     def reason(self, line: LinePattern, signature: Signature, context: FailureContext) -> Reason:
         """Return the reason why a line with this signature fails in this context."""
@@ -43,6 +46,10 @@ class ReasonFinder:
         is_word = lexer.is_keyword(kind)
         if is_word and lexer.name in context.expected and offender == lexer.names[kind]:
             return AS_NAME
+        if kind >= 0 and not is_word and kind not in self._read:
+            return ("unread",)
+        if lexer.has_value(kind) and lexer.name in context.expected:
+            return ("value",)
         if index == 0:
             return ("begins", offender)
         if lead and not signature.bracket and self._begins_operand(kind):
@@ -50,6 +57,20 @@ class ReasonFinder:
         if signature.bracket or not (is_word or kind == lexer.line_kind):
             return ("sign", signature.bracket, offender)
         return (lead, offender)
+
+    @staticmethod
+    def _kinds_read(network: Network, start: str) -> frozenset[int]:
+        """Return the kinds of token that some rule reads which programs have."""
+        calls: dict[str, set[str]] = {rule: set() for rule in network.entry}
+        for position, called in enumerate(network.calls):
+            calls[network.rule[position]].update(network.rule[entry] for entry, _ in called)
+        rules = {start, *reached(calls, start)}
+        return frozenset(
+            kind
+            for position, shifts in enumerate(network.shifts)
+            if network.rule[position] in rules
+            for kind in shifts
+        )
 
     def _begins_operand(self, kind: int) -> bool:
         return kind > 0 and bool(self._matcher.begun_by((kind,)) & self._matcher.value_rules)

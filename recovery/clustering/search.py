@@ -83,8 +83,7 @@ class CauseSearch:
 
         Where a ``rule`` is given, it is sought among the alternatives that this rule may get.
         """
-        members = self._sought = frozenset(group)
-        self._has_words = all(self.lines[n].keywords for n in group)
+        members = self._seek(group)
         proposals = self._proposals(group, rule)
         for place, best in enumerate(proposals):
             # a line that only advances has its first cause here, and another one later
@@ -92,6 +91,17 @@ class CauseSearch:
             if taken:
                 return Cause(tuple(sorted(taken)), tuple(proposals[place:]))
         return None
+
+    def ranked(self, proposals: Sequence[Proposal], lines: Collection[int]) -> list[Proposal]:
+        """Return proposals for some or all of these lines, the best for all of them first."""
+        self.open = set(self._seek(lines))
+        return self._ranked(proposals, sorted(lines, key=lambda n: (-self.weights[n], n)))
+
+    def _seek(self, lines: Collection[int]) -> frozenset[int]:
+        """Make the lines those in question; return them."""
+        self._sought = frozenset(lines)
+        self._has_words = all(self.lines[n].keywords for n in lines)
+        return self._sought
 
     def best_from_scratch(self, lines: Sequence[int], rule: str = "") -> Cause | None:
         """Return the cause of the heaviest of these lines, as if there were no others."""
@@ -280,7 +290,7 @@ class CauseSearch:
             ]
         ]
 
-    def _ranked(self, proposals: list[Proposal], lines: Sequence[int]) -> list[Proposal]:
+    def _ranked(self, proposals: Sequence[Proposal], lines: Sequence[int]) -> list[Proposal]:
         """Return the proposals sorted by negatives, then by worth and readable share of files."""
         worth = {}
         alike = self._alike(lines[0])

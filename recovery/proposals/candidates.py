@@ -82,7 +82,8 @@ class CandidateFinder:
         for number, line in enumerate(lines):
             for found in self._sites_of(line):
                 if isinstance(found, EditSite):
-                    first = self._sign(found.words) or ""
+                    any_sign = found.kind == "repetition"
+                    first = "" if any_sign else self._sign(found.words) or ""
                     slots[found.kind, found.rule, found.place, first][number].append(found)
                 else:
                     rank, edits = found
@@ -165,12 +166,18 @@ class CandidateFinder:
         return self.phraser.matcher.sign(words[0]) if words else None
 
     def _of_site(self, site: EditSite) -> Iterator[RankedEdits]:
+        if site.kind == "repetition":
+            yield self._repetition(site, site.words)
+            return
         near = self.profile.near(site.rule)
         for symbols in self.phraser.phrases(site.words, near):
             yield from self._written(site, site.words, symbols)
 
     def _of_slot(self, sites: Sequence[EditSite]) -> Iterator[RankedEdits]:
         some = min(sites, key=lambda site: site.rank)
+        if some.kind == "repetition":
+            yield self._repetition(some, [word for site in sites for word in site.words])
+            return
         phrases = sorted({site.words for site in sites}, key=str)
         words = [word for phrase in phrases for word in phrase]
         near = self.profile.near(some.rule)
@@ -179,6 +186,18 @@ class CandidateFinder:
             yield from self._written(some, words, symbols, looped=units != phrases)
 
     # ------------------------------------------------------------------------------ the edits
+
+    def _repetition(self, site: EditSite, signs: Iterable[Token]) -> RankedEdits:
+        """Return the edits that repeat the operand before a site: ``((x | y) a)*``."""
+        signs = set(signs)
+        texts = sorted(filter(None, map(self.phraser.matcher.text, signs)))
+        sign = texts[0] if len(texts) == 1 else f"({' | '.join(texts)})"
+        elements = self.profile.sequence(site.rule, site.place[:-1]).elements
+        operand = self.profile.grammar.by_name[site.rule].source_of(elements[site.place[-1] - 2])
+        text = f"({sign} {operand})*"
+        rank = site.rank - self.profile.same_text_bonus(text)
+        tokens = self._site_finder.reserved(list(signs))
+        return rank, (*tokens, Insert(site.rule, site.place, text))
 
     def _written(
         self,
@@ -234,10 +253,11 @@ class CandidateFinder:
             rule, symbols
         ):
             rank += self.similarity.dissimilarity(rule, symbols)
+            rank -= self.profile.same_text_bonus(text)
             if self.similarity.repeats_sibling(rule, symbols):
                 rank += 2 * UNLIKELY_COST
             if self.similarity.extends(rule, symbols):
-                rank += UNLIKELY_COST
+                rank += 2 * UNLIKELY_COST
             if len(symbols) == 1 and self.phraser.would_be_read_twice(rule, text):
                 rank += 2 * UNLIKELY_COST
             yield rank, (*tokens, AddAlternative(rule, text))

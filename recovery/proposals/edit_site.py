@@ -42,11 +42,12 @@ class EditSite:
 
     ``insert`` means before the element at the place; ``lines`` the same, with a line end after them
     and any number of times; ``widen`` instead of that element; ``alternative`` an alternative of
-    the rule, whatever the place; ``line`` an alternative with a line end. ``rank`` estimates how
-    much an edit there accepts besides its text.
+    the rule, whatever the place; ``line`` an alternative with a line end; ``repetition`` that the
+    element before the place may come again, behind any of the words. ``rank`` estimates how much an
+    edit there accepts besides its text.
     """
 
-    kind: OneOf["insert", "lines", "line", "widen", "alternative"]
+    kind: OneOf["insert", "lines", "line", "widen", "alternative", "repetition"]
     rule: str
     place: Address
     words: tuple[Token, ...]

@@ -117,8 +117,12 @@ class GrammarProfile:
         return name in self._unused or name not in self.recognizer.network.entry
 
     def same_text_bonus(self, text: str) -> int:
-        """Return the bonus for a text that some rule has as an optional or repeated part."""
-        return SAME_TEXT_BONUS if "".join(text.split()) in self._element_texts else 0
+        """Return the bonus for a text that some rule has as an optional or repeated part.
+
+        A rule that nothing calls was probably written for what is missing, too.
+        """
+        is_known = "".join(text.split()) in self._element_texts or bool(self.unused_in(text))
+        return SAME_TEXT_BONUS if is_known else 0
 
     def usual_place(self, rule: str, at: Address, text: str) -> Address | None:
         """Return where a part belongs, judged by its neighbours in other sequences.

@@ -134,7 +134,7 @@ class LineSiteFinder:
         for position, stack in configurations_of(self.recognizer, before):
             for entry, back in network.calls[position]:
                 rule = network.rule[entry]
-                if not self.profile.is_hub(rule):
+                if not self.profile.has_choice(rule):
                     continue
                 beyond = self.recognizer.at((back, stack), before)
                 if self.recognizer.run(beyond, end)[1] is None:

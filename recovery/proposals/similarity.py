@@ -5,12 +5,14 @@ A rule that is a choice of statements may get one more; a rule of a single form 
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Sequence
 from difflib import SequenceMatcher
 from functools import cached_property
 
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat, Rule
+from recovery.forms.parts import choices
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import (
     HUB_ALTERNATIVES,
@@ -23,6 +25,8 @@ from recovery.tuning import (
     STRONGEST_SIMILARITY_STEPS,
 )
 
+_NAMES = re.compile(r"\w+")
+
 
 class Similarity:
     """Compares alternatives under one grammar."""
@@ -30,27 +34,24 @@ class Similarity:
     def __init__(self, profile: GrammarProfile) -> None:
         self.profile = profile
         self.vocabulary = profile.vocabulary
-        self._classes: dict[str, list[list[str]]] = {}
+        self._classes: dict[str, list[list[str]]] = {}  # of the symbols of each alternative
+        self._names: dict[str, list[list[str]]] = {}  # the symbols themselves
         self._leading_words: dict[str, frozenset[str]] = {}
 
     def dissimilarity(self, rule: str, symbols: Sequence[str]) -> int:
         """Return a penalty for an alternative of a rule; negative if the rule has a similar one.
 
-        Alternatives are compared as sequences of symbol classes: all keywords are one class. A rule
-        with many alternatives takes more of them easily, a rule with one does not.
+        Alternatives are compared as sequences of symbol classes, where all keywords are one class,
+        and by the symbols themselves. A rule with many alternatives takes more of them easily, a
+        rule with one does not.
         """
-        known = self._classes.get(rule)
-        if known is None:
-            known = self._classes[rule] = [
-                [self._class(rule, e) for e in a.elements]
-                for a in self.profile.grammar.by_name[rule].alternatives
-            ]
+        if rule not in self._classes:
+            found = self.profile.grammar.by_name[rule]
+            written = [list(map(found.source_of, a.elements)) for a in found.alternatives]
+            self._classes[rule] = [list(map(self._class_of, some)) for some in written]
+            self._names[rule] = [_NAMES.findall(" ".join(some)) for some in written]
+        known = self._classes[rule]
         new = [self._class_of(symbol) for symbol in symbols]
-        matcher = SequenceMatcher(None, b=new, autojunk=False)
-        best = 0.0
-        for old in known:
-            matcher.set_seq1(old)
-            best = max(best, matcher.ratio())
         if self.profile.is_single_reference(rule):
             return 0
         kinds = {_kind(old[0]) for old in known if old}
@@ -58,24 +59,34 @@ class Similarity:
             return -STRONGEST_SIMILARITY_STEPS if _kind(new[0]) in kinds else -SIMILARITY_STEPS
         if self.gathers(rule):
             if not self._is_single(symbols):
-                if self.vocabulary.words_of(rule):
-                    return STRONGEST_SIMILARITY_STEPS  # unlike its alternatives, no word
                 return (
                     STRONG_SIMILARITY_STEPS
                     if self._is_known_by(rule, symbols[0])
                     else LOOSE_GATHERING_COST
                 )
             if not self.profile.is_free(symbols[0]):
-                return -SIMILARITY_STEPS  # it has its place already
+                # it has its place already, beside some of these alternatives or others
+                return -SIMILARITY_STEPS - self._shared(rule, symbols[0])
             return (
                 -STRONGEST_SIMILARITY_STEPS if _kind(new[0]) in kinds else -STRONG_SIMILARITY_STEPS
             )
         leads = self._leads(rule)
+        if not leads.isdisjoint(choices(symbols[0])):
+            return -STRONG_SIMILARITY_STEPS
         if len(leads) == 1 and "" not in leads:
-            return -SIMILARITY_STEPS if symbols[0] in leads else STRONG_SIMILARITY_STEPS
+            return STRONG_SIMILARITY_STEPS
+        best = _likeness(new, known)
         if best >= SIMILAR_RATIO and len(known) > 1:
-            return -round(SIMILARITY_STEPS * best)
+            same = _likeness(_NAMES.findall(" ".join(symbols)), self._names[rule])
+            return -round(SIMILARITY_STEPS * best + STRONG_SIMILARITY_STEPS * same)
         return NEW_FORM_COST + max(0, MANY_FORMS - len(known))
+
+    def _shared(self, rule: str, symbol: str) -> int:
+        """Return how many alternatives a rule shares with one that has the symbol as another."""
+        own = self.profile.alternatives(rule)
+        rules = (r.name for r in self.profile.grammar.rules if not r.is_lexer)
+        others = (self.profile.alternatives(r) for r in rules if r != rule)
+        return max((len(own & o) for o in others if symbol in o), default=0)
 
     def _is_one_of_words(self, rule: str) -> bool:
         """Return whether a rule is a choice of words."""
@@ -100,7 +111,8 @@ class Similarity:
     def extends(self, rule: str, symbols: Sequence[str]) -> bool:
         """Return whether the symbols are an existing alternative with more before or after it.
 
-        The addition is then an optional part of that alternative.
+        The addition is then an optional part of that alternative. So is a word before a rule that
+        is a kind of statement.
         """
         found = self.profile.grammar.by_name[rule]
         for alternative in found.alternatives:
@@ -111,13 +123,23 @@ class Similarity:
                 list(symbols[-count:]),
             ):
                 return True
-        return False
+        inner = symbols[1:-1] if symbols[-1] == self.profile.line_end else symbols[1:]
+        is_kind = len(inner) == 1 and inner[0] in self._gathered
+        return (
+            is_kind and "" not in self._leads(inner[0]) and not self.vocabulary.words_of(inner[0])
+        )
 
     def is_foreign(self, rule: str, symbols: Sequence[str]) -> bool:
-        """Return whether a rule is one kind of statement, and the symbols are another kind."""
+        """Return whether a rule is one kind of statement, and the symbols are another kind.
+
+        To a choice of words no phrase is added.
+        """
         leads = self._leads(rule)
+        if len(symbols) > 1 and self.profile.has_choice(rule) and self.vocabulary.words_of(rule):
+            return True
         another_word = len(symbols) == 1 and self._is_one_of_words(rule)
-        known = "" in leads or symbols[0] in leads or len(leads) >= HUB_ALTERNATIVES
+        same_words = leads.issuperset(choices(symbols[0]))
+        known = "" in leads or same_words or len(leads) >= HUB_ALTERNATIVES
         return rule in self._gathered and not (known or another_word)
 
     @cached_property
@@ -180,10 +202,11 @@ class Similarity:
             return [w for a in element.alternatives for w in self._words(a.elements[0])]
         return [""]
 
-    def _class(self, rule: str, element: Element) -> str:
-        return self._class_of(self.profile.grammar.by_name[rule].source_of(element))
-
     def _class_of(self, symbol: str) -> str:
+        words = choices(symbol)
+        classes = set(map(self._class_of, words)) if len(words) > 1 else set()
+        if len(classes) == 1:
+            return classes.pop()
         suffix = symbol[-1] if symbol[-1] in "?*+" else ""
         name = symbol.rstrip("?*+")
         if name in self.profile.grammar.by_name and not name[0].isupper():
@@ -195,6 +218,16 @@ class Similarity:
         if name.isidentifier() and (kind is None or lexer.is_keyword(kind)):
             return "keyword" + suffix
         return symbol
+
+
+def _likeness(new: Sequence[str], known: Sequence[Sequence[str]]) -> float:
+    """Return how like a sequence is to the most similar one, 0 to 1."""
+    matcher = SequenceMatcher(None, b=new, autojunk=False)
+    best = 0.0
+    for old in known:
+        matcher.set_seq1(old)
+        best = max(best, matcher.ratio())
+    return best
 
 
 def _kind(symbol: str) -> str:

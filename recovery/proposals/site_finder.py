@@ -272,23 +272,36 @@ class EditSiteFinder:
         width = self.profile.width(rule)
         return width - UNLIKELY_COST if self.profile.is_single_reference(rule) else width
 
-    def _repetitions(
-        self, rule: str, place: Address, words: Sequence[Token]
-    ) -> Iterator[RankedEdits | EditSite]:
-        """Yield the repetition of the operand before a place: ``a (',' a)*``."""
-        if place[-1] == 1 or len(words) < 2 or any(keyword for _, keyword in words[1:]):
+    def _repetitions(self, rule: str, place: Address, words: Sequence[Token]) -> Iterator[EditSite]:
+        """Yield the repetition of the operand before a place, with the signs between."""
+        if place[-1] == 1:
             return
         before = self.profile.sequence(rule, place[:-1]).elements[place[-1] - 2]
         if not isinstance(before, Reference) or before.is_token:
             return
-        matcher = self.phraser.matcher
-        sign, kinds = matcher.text(words[0]), tuple(kind for kind, _ in words[1:])
-        if sign is not None and before.name in matcher.rules_for(kinds):
-            text = f"({sign} {before.name})*"
+        signs = self._signs_between(before.name, words)
+        if signs:
             rank = self._insertion_width(rule) + REPETITION_COST
             rank += self.phraser.breadth([before.name]) // REPETITION_BREADTH_PART
-            rank -= self.profile.same_text_bonus(text)
-            yield rank, (*self.reserved(words), Insert(rule, place, text))
+            yield EditSite("repetition", rule, place, signs, rank)
+
+    def _signs_between(self, rule: str, words: Sequence[Token]) -> tuple[Token, ...]:
+        """Return the signs in a row of signs and operands; none for anything else."""
+        matcher = self.phraser.matcher
+        signs: list[Token] = []
+        place = 0
+        while place < len(words):
+            signs.append(words[place])
+            end = next((i for i, w in enumerate(words[place + 1 :], place + 1) if w[1]), len(words))
+            operands = (
+                i
+                for i in range(end, place + 1, -1)
+                if rule in matcher.rules_for(tuple(kind for kind, _ in words[place + 1 : i]))
+            )
+            place = next(operands, 0)
+            if matcher.text(signs[-1]) is None or not place:
+                return ()
+        return tuple(signs)
 
     def _blocks(self, rule: str, place: Address, words: Sequence[Token]) -> Iterator[RankedEdits]:
         """Yield a known block that this line begins and that is not expected at this place."""
@@ -339,7 +352,7 @@ class EditSiteFinder:
             return  # the same as an alternative; the words that begin and close a line or a block
         if called and place[-1] == 1 and len(place) == 2 and profile.is_hub(rule):
             return  # the same as an alternative of the rule or of the one it calls
-        if place[-1] == 1 and len(place) == 2 and len(words) > LONGEST_PREFIX:
+        if profile.is_at_start(rule, place) and len(words) > LONGEST_PREFIX:
             return  # so long another beginning is a different construct
         rank = profile.width(rule) + (WIDEN_FIRST_WORD_COST if leading else WIDEN_COST)
         if leading and len(elements) < SHARED_ELEMENTS:

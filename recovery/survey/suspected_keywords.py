@@ -109,7 +109,8 @@ class SuspectedKeywords:
         return tuple(
             (place, word)
             for place, word in names_of_line(failed.words, form.kinds, self.lexer)
-            if word in self._words and self._stands_out(form, place, word)
+            if word in self._words
+            and (place == form.index > 0 or self._stands_out(form, place, word))
         )
 
     def _sole_words(self, failures: Iterable[_Failure]) -> frozenset[str]:

@@ -23,6 +23,14 @@ def test_words_at_one_place_become_a_choice() -> None:
     assert Insert("motion", (1, 3), "(C_ORI | C_VEL)?") in [c.edits[-1] for c in found]
 
 
+def test_a_choice_in_front_of_an_operand_grows() -> None:
+    """Repetitions behind different signs are one repetition behind any of them."""
+    texts = "(('*' | '/') factor)*", "('+' factor)*"
+    edits = [Insert("product", (1, 2), text) for text in texts]
+    [both] = merged_as_choice([Candidate((edit,), 3) for edit in edits])
+    assert Insert("product", (1, 2), "(('*' | '+' | '/') factor)*") == both.edits[-1]
+
+
 def test_the_same_word_or_phrase_is_one_thing() -> None:
     """A shared new word or the same text in two rules is one thing; two statements are not."""
     brake = AddAlternative("simpleStatement", "BRAKE"), AddAlternative("interruptAction", "BRAKE")

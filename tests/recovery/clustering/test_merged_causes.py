@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from grammar.notation.edits import AddAlternative, Edit, Widen
+from grammar.notation.edits import AddAlternative, AddToken, Edit, Widen
 from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
@@ -117,6 +117,19 @@ def test_causes_of_one_reason_are_one() -> None:
     [one] = merged_by_reason(searched, causes, [("sign",)] * 4)
     assert ((0, 1, 2, 3), {LESS, MORE}) == (one.lines, {p.edits[0] for p in one.proposals})
     assert causes == merged_by_reason(searched, causes, [("<",), ("<",), (">",), (">",)])
+
+
+def test_causes_that_need_the_same_word_are_one() -> None:
+    """Unless lines of one of them fail at another new word."""
+    searched = search()
+    new = AddToken("WORD")
+    causes = [
+        Cause(lines, (searched.proposal((new, edit), 0),))
+        for lines, edit in (((0, 1), LESS), ((2, 3), MORE))
+    ]
+    [one] = merged_by_reason(searched, causes, [("<",), ("<",), ("word", "WORD"), (">",)])
+    assert (0, 1, 2, 3) == one.lines
+    assert causes == merged_by_reason(searched, causes, [("<",), ("<",), *[("word", "OTHER")] * 2])
 
 
 def test_the_alternatives_of_a_missing_rule_are_one_proposal() -> None:

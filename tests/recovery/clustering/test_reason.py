@@ -2,6 +2,7 @@
 
 import pytest
 
+from grammar.notation.edits import Edit, RemoveAlternative, RemoveElement, apply
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.failures import FailureFinder
@@ -13,25 +14,26 @@ from recovery.survey.survey import survey_texts
 from recovery.survey.suspected_keywords import SuspectedKeywords
 
 _START = read_file(GRAMMAR.with_name("preliminary.g4"))
-_RECOGNIZER = Recognizer(_START)
 
 
-def reasons(*texts: str) -> list[Reason]:
+def reasons(*texts: str, without: tuple[Edit, ...] = ()) -> list[Reason]:
     """The reason of the first failure of each program."""
-    found = survey_texts([(f"{n}.src", text) for n, text in enumerate(texts)], _START)
+    grammar = apply(_START, without)
+    recognizer = Recognizer(grammar)
+    found = survey_texts([(f"{n}.src", text) for n, text in enumerate(texts)], grammar)
     failed = [(file.digest, file.failures[0]) for file in found.files]
     suspected = SuspectedKeywords(
-        _RECOGNIZER.lexer, [(digest, line, found.forms[line.form]) for digest, line in failed]
+        recognizer.lexer, [(digest, line, found.forms[line.form]) for digest, line in failed]
     )
-    reason, finder = ReasonFinder(_RECOGNIZER).reason, FailureFinder(_RECOGNIZER)
+    reason, finder = ReasonFinder(recognizer).reason, FailureFinder(recognizer)
     out = []
     for _, line in failed:
         form = found.forms[line.form]
-        before = _RECOGNIZER.restore(form.before)
-        state = _RECOGNIZER.run(before, form.kinds[: form.index])[0]
+        before = recognizer.restore(form.before)
+        state = recognizer.run(before, form.kinds[: form.index])[0]
         context = finder.context(state)
         pattern = LinePattern(form, suspected.of_line(line, form))
-        signature = signature_of(_RECOGNIZER.lexer, form, pattern.keywords, context)
+        signature = signature_of(recognizer.lexer, form, pattern.keywords, context)
         out.append(reason(pattern, signature, context))
     return out
 
@@ -71,6 +73,18 @@ def test_one_lack_has_one_reason(texts: tuple[str, ...]) -> None:
 def test_what_is_lacking_distinguishes_reasons(texts: tuple[str, ...]) -> None:
     """A word as a name is none too many; signs, brackets and first words make a difference."""
     assert len(texts) == len(set(reasons(*texts)))
+
+
+def test_signs_that_no_rule_reads_are_one_reason() -> None:
+    """Whatever the sign, and wherever it stands: a level of operators is missing."""
+    texts = routine("X=A*B"), routine("X=A/B"), routine("X[1]=F((A/B))")
+    assert 1 == len(set(reasons(*texts, without=(RemoveElement("product", (1, 2)),))))
+
+
+def test_values_where_a_name_may_be_are_one_reason() -> None:
+    """A rule of values is missing, though others read some of them."""
+    texts = routine("X=1"), routine("X=2.5"), routine('X="A"')
+    assert {("value",)} == set(reasons(*texts, without=(RemoveAlternative("primary", 1),)))
 
 
 def test_a_new_word_is_the_reason() -> None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from grammar.notation.edits import Edit, RemoveAlternative, RemoveRule, apply
+from grammar.notation.edits import Edit, RemoveAlternative, RemoveElement, RemoveRule, apply
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
@@ -123,6 +123,12 @@ CONSTRUCTS = {
         [program("A=D EXOR E"), program("IF (B EXOR C) THEN", "ENDIF")],
         [program("A=EXOR C"), program("A=B EXOR"), program("B EXOR C"), program("EXOR=1")],
         ["EXOR"],
+    ),
+    "level of operators": Missing(
+        program("A=B*C/D*2"),
+        [program("A=D/E"), program("A=B*C+D/E"), program("IF (B*C)>D THEN", "ENDIF")],
+        [program("A=*C"), program("A=B*"), program("A=B*/C"), program("B*C=1")],
+        removed=[RemoveElement("product", (1, 2))],
     ),
     "statement of a new word": Missing(
         program("SIGNAL A $IN[1]"),
