@@ -41,9 +41,9 @@ def _line(before: str, part: str, after: str, **more: str) -> Shape:
     )
 
 
-def _list(part: str, head: str = "", tail: str = "") -> Shape:
+def _list(part: str, head: str = "") -> Shape:
     """Return a shape that is a data list."""
-    return Shape(part, head=f"DEFDAT A PUBLIC\n{head}", tail=f"{tail}\nENDDAT\n", name="a.dat")
+    return Shape(part, head=f"DEFDAT A PUBLIC\n{head}", tail="\nENDDAT\n", name="a.dat")
 
 
 #: The shapes by the name of what repeats in them.

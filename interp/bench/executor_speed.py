@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from grammar.syntax.source import Source
-from interp.bench.kernels import Kernel, kernels_in
+from interp.bench.kernels import Kernel
 from interp.executors import COMPILED, EXECUTORS, Prepared, available, is_available
 from interp.native import AVAILABLE
 from interp.port.requests import Crash, End, Fail, StopAdvance, Write
@@ -34,7 +34,6 @@ from interp.program.load import Limits, load
 from interp.session import RunSetup, run_program
 from interp.values.faults import LinkError
 
-ROUNDS = 3
 _LIMITS = Limits(statements=2**31 - 1, per_slice=1_000_000)
 #: The smallest time in s that the tree interpreter should need for the work of a kernel.
 _LEAST = 0.05
@@ -63,11 +62,11 @@ class MeasurementError(Exception):
 
 
 def measure_executors(
-    kernels: Sequence[Kernel] | None = None,
-    rounds: int = ROUNDS,
+    kernels: Sequence[Kernel],
+    rounds: int,
     on_step: Callable[[], object] = lambda: None,
 ) -> dict[str, Any]:
-    """Measure kernels, by default those of this project; ``on_step`` is called `steps` times.
+    """Measure kernels in rounds; ``on_step`` is called `steps` times.
 
     In the record, each of ``kernels`` has the ``amount`` N, and in ``ns`` the time of ``WORK(N)``
     on each executor in ns, ``None`` if it is not available. ``load_ms``, ``translate_ms`` and
@@ -80,7 +79,7 @@ def measure_executors(
     Raises `MeasurementError` if results differ or a kernel fails.
     """
     rows = []
-    for kernel in kernels_in().values() if kernels is None else kernels:
+    for kernel in kernels:
         try:
             rows.append(_measured(kernel, rounds))
         except (LinkError, MeasurementError, OSError, subprocess.SubprocessError) as error:

@@ -19,7 +19,6 @@ from grammar.check.names.unresolved_name import Files
 from grammar.check.project.framework import Checked, check_module, check_project, typed_module
 from grammar.diagnostics.syntax_errors.findings import syntax_findings
 from grammar.semantics.link import File, Project, extended, link
-from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Found, Module, Scope
 from grammar.semantics.symbols import ImportSymbol, Kind, RoutineTable, Symbol
 from grammar.semantics.types import Array, Structure, Type
@@ -280,7 +279,6 @@ def _has_no_index(node: ast.Expression) -> bool:
 def load(
     sources: Iterable[Source],
     main: str,
-    system: System | None = None,
     *,
     strict: bool = True,
     stands_in: bool = False,
@@ -304,7 +302,7 @@ def load(
         if unread is not None:
             unread += [str(error)] if found is None else found.reasons
     damaged = frozenset(path for path, (_, found) in wrong.items() if found is not None)
-    for project in link(files, system).projects:
+    for project in link(files).projects:
         if any(module.path == main for module in project.modules):
             whole = _checked(project, by_path, main, strict=strict, stands_in=stands_in)
             return replace(whole, damaged=damaged)
@@ -312,7 +310,7 @@ def load(
 
 
 def load_all(
-    sources: Iterable[Source], system: System | None = None, *, stands_in: bool = False
+    sources: Iterable[Source], *, stands_in: bool = False
 ) -> tuple[tuple[CheckedProgram, ...], tuple[tuple[str, str], ...]]:
     """Link and type files of any number of projects.
 
@@ -322,7 +320,7 @@ def load_all(
     """
     by_path, files, wrong = _read_files(sources, stands_in=stands_in)
     programs: list[CheckedProgram] = []
-    for project in link(files, system).projects:
+    for project in link(files).projects:
         first = project.modules[0].path
         whole = _checked(project, by_path, first, strict=False, stands_in=stands_in)
         programs += [

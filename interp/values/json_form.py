@@ -65,11 +65,6 @@ def _shortest(number: float) -> float:
 _LARGEST = 3.4028235677973362e38
 
 
-def rendered(value: Value | None) -> str:
-    """Return the value as JSON, in one line."""
-    return json.dumps(to_json(value), ensure_ascii=False, separators=(",", ":"))
-
-
 def to_json(value: Value | None) -> Json:
     """Return the value in the form that `json.dumps` accepts."""
     match value:

@@ -67,11 +67,11 @@ class Module:
     data: list[str] | None = None
 
 
-def _head(cell: Cell, access: str = "RVP") -> Iterator[str]:
+def _head(cell: Cell) -> Iterator[str]:
     choices = cell.choices
     if choices.chance(3):  # typed on a PC, never stored by a controller
         return
-    yield f"&ACCESS {access}"
+    yield "&ACCESS RVP"
     if choices.chance(70):
         yield f"&REL {choices.between(1, 250)}"
     if choices.chance(30):
@@ -83,9 +83,9 @@ def _head(cell: Cell, access: str = "RVP") -> Iterator[str]:
         yield r"&PARAM DISKPATH = KRC:\R1\Program"
 
 
-def as_program(cell: Cell, lines: Iterable[str], access: str = "RVP") -> list[str]:
+def as_program(cell: Cell, lines: Iterable[str]) -> list[str]:
     """Return the lines of a program file: head and routines."""
-    return [*_head(cell, access), *lines]
+    return [*_head(cell), *lines]
 
 
 def as_data_list(

@@ -44,9 +44,9 @@ class Sample:
         return self.files[0][0]
 
 
-def seeded(seed: int, number: int, size: Size | None = None) -> Sample:
+def seeded(seed: int, number: int) -> Sample:
     """Return the program with this number under a seed; it is always the same."""
-    return generate(SeededChoices(f"{seed}/{number}"), size)
+    return generate(SeededChoices(f"{seed}/{number}"))
 
 
 def generate(choices: Choices, size: Size | None = None) -> Sample:

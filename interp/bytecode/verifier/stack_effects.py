@@ -305,8 +305,7 @@ class StackEffects:
         if self._code.result is None:
             raise Refused("the code object has no result")
         self._take(self.value(self._code.result))
-        if self._stack is not self.empty:
-            raise Refused("the stack must be empty here")
+        self.check_empty()
 
     # ----------------------------------------------------------------------- checks
 

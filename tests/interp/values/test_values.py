@@ -24,7 +24,7 @@ from grammar.semantics.types import (
     Type,
 )
 from interp.values.faults import Fault, LinkError
-from interp.values.json_form import from_json, real_text, rendered, to_json
+from interp.values.json_form import from_json, real_text, to_json
 from interp.values.values import (
     REAL_MAX,
     ArrayValue,
@@ -47,6 +47,11 @@ COLOUR = Enumeration("COLOUR", ("RED", "Green", "BLUE"))
 PART = Structure("PART", (Member("COUNT", INT), Member("NAME", Array(CHAR, (4,)))))
 BOX = Structure("BOX", (Member("FIRST", PART), Member("WEIGHT", REAL), Member("C", COLOUR)))
 SINGLES = st.floats(width=32, allow_nan=False, allow_infinity=False)
+
+
+def rendered(value: Value | None) -> str:
+    """The value as JSON, in one line."""
+    return json.dumps(to_json(value), ensure_ascii=False, separators=(",", ":"))
 
 
 def _structure(name: str) -> Structure:
