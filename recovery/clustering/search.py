@@ -155,15 +155,21 @@ class CauseSearch:
         return self._ranked(list(useful.values()), heavy)[:MOST_PROPOSALS]
 
     def _names_kept(self, proposal: Proposal) -> Proposal:
-        """Return the proposal; its reserved words remain names if some files use them so."""
+        """Return the proposal; its reserved words remain names if some files use them so.
+
+        Unless these files only have a word where the grammar has others of its kind.
+        """
         if not self._loses(proposal.edits):
             return proposal
         profile, words = self.finder.profile, self.finder.profile.vocabulary
-        edits = words.still_names(proposal.edits)
-        if words.names is None or edits is None or self._loses(edits):
-            return proposal
+        breadth = proposal.breadth + 1
+        edits = words.in_like_rules(proposal.edits)
+        if edits is None or self._loses(edits):
+            edits = words.still_names(proposal.edits)
+            if words.names is None or edits is None or self._loses(edits):
+                return proposal
+            breadth = proposal.breadth + profile.width(words.names) // STILL_NAMES_PART
         result = self.trial.result(edits, self.open)
-        breadth = proposal.breadth + profile.width(words.names) // STILL_NAMES_PART
         return Proposal(edits, result.mended, result.advanced, breadth, self.count_negatives(edits))
 
     def _loses(self, edits: tuple[Edit, ...]) -> bool:

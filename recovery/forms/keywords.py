@@ -134,6 +134,29 @@ class Vocabulary:
                         return rule.name
         return None
 
+    def in_like_rules(self, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
+        """Return the edits with the word that the last one adds in all rules like the one it is in.
+
+        These are rules that have two words of that rule or more, except lists of all words. Returns
+        ``None`` if there is no such rule, or no such word.
+        """
+        last = edits[-1]
+        if not isinstance(last, AddAlternative) or AddToken(last.text) not in edits:
+            return None
+        written = {
+            rule.name: {
+                e.name
+                for a in rule.alternatives
+                for e in a.elements
+                if len(a.elements) == 1 and isinstance(e, Reference) and e.is_token
+            }
+            for rule in self.grammar.rules
+            if not rule.is_lexer and rule.name not in self.word_lists
+        }
+        own = written.pop(last.rule, set())
+        more = [AddAlternative(rule, last.text) for rule in written if len(own & written[rule]) > 1]
+        return (*edits[:-1], *more, last) if more else None
+
     def still_names(self, edits: Sequence[Edit]) -> tuple[Edit, ...] | None:
         """Return the edits with their reserved words left names; ``None`` without a rule for names.
 

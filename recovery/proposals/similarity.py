@@ -78,7 +78,7 @@ class Similarity:
         best = _likeness(new, known)
         if best >= SIMILAR_RATIO and len(known) > 1:
             same = _likeness(_NAMES.findall(" ".join(symbols)), self._names[rule])
-            return -round(SIMILARITY_STEPS * best + STRONG_SIMILARITY_STEPS * same)
+            return -round(SIMILARITY_STEPS * (best + same))
         return NEW_FORM_COST + max(0, MANY_FORMS - len(known))
 
     def _shared(self, rule: str, symbol: str) -> int:

@@ -1,7 +1,8 @@
 """Which words a grammar reserves, which it uses, and which are names all the same."""
 
 from grammar.notation.edits import AddAlternative, AddToken
-from grammar.notation.g4 import read
+from grammar.notation.g4 import read, read_file
+from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Group
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.keywords import Vocabulary
@@ -72,3 +73,13 @@ def test_a_reserved_word_may_stay_a_name() -> None:
         AddAlternative("name", "NEW"),
         AddAlternative("statement", "NEW name"),
     ) == VOCABULARY.still_names(edits)
+
+
+def test_a_word_is_in_all_rules_like_the_one_it_is_in() -> None:
+    """Rules that share two words list one kind of word; lists of all words and of names do not."""
+    whole = Vocabulary(Recognizer(read_file(GRAMMAR)))
+    edits = (*whole.reserve(["NEW"]), AddAlternative("predefinedType", "NEW"))
+    found = whole.in_like_rules(edits)
+    assert (*edits[:-1], AddAlternative("type", "NEW"), edits[-1]) == found
+    assert whole.in_like_rules((*edits[:-1], AddAlternative("criterion", "NEW"))) is None
+    assert whole.in_like_rules((AddAlternative("predefinedType", "HALT"),)) is None
