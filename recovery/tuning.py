@@ -7,8 +7,8 @@ said in one of these ways:
 - *bound*: it keeps time or memory within limits, and is out of reach of ordinary source;
 - *revised*: the earlier values are given; by what they were compared has not been kept;
 - *measured*: the survey of the public corpus under preliminary.g4, with about half of the value: so
-  many clusters instead of 53; or 53 with *other proposals*; or *the same* clusters and proposals.
-  It is not known whether the changed proposals are better or worse;
+  many clusters instead of the 53 that it had then; or 53 with *other proposals*; or *the same*
+  clusters and proposals. It is not known whether the changed proposals are better or worse;
 - *not measured*: a first guess that has not been compared with another value.
 
 Whoever changes a value compares `krl bench mutation` before and after, for growing
