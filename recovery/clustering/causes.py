@@ -146,9 +146,9 @@ def merged_by_reason(
 ) -> list[Cause]:
     """Return the causes; those most of whose lines fail for the same reason are merged.
 
-    After that, those are that need the same words, or for which the same rule gets alternatives
-    that nothing calls.
-    The proposals of a merged cause are sorted by what they repair of all its lines.
+    After that, causes are merged that need the same words, or for which the same rule gets
+    alternatives that nothing calls. The proposals of a merged cause are sorted by what they repair
+    of all its lines.
     """
     alike: dict[Reason | int, list[Cause]] = defaultdict(list)
     for place, cause in enumerate(causes):

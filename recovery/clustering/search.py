@@ -155,9 +155,9 @@ class CauseSearch:
         return self._ranked(list(useful.values()), heavy)[:MOST_PROPOSALS]
 
     def _names_kept(self, proposal: Proposal) -> Proposal:
-        """Return the proposal; its reserved words remain names if some files use them so.
+        """Return the proposal, changed where files that could be read would be lost by its words.
 
-        Unless these files only have a word where the grammar has others of its kind.
+        Then a word is added to all rules that list words of its kind, or remains a name.
         """
         if not self._loses(proposal.edits):
             return proposal
