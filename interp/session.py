@@ -28,7 +28,7 @@ from interp.program.variables import data_lists
 from interp.robot.api.batch import BatchCore
 from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.kinematics.data_list import DataListError
-from interp.robot.kinematics.dynamics_data import with_torques
+from interp.robot.kinematics.gear_torques import with_torques
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
 from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.models import default_machine, model_file

@@ -133,12 +133,12 @@ class Parser:
                 self._outlines.clear()
             numbered = self._deriver.actions
             actions = [numbered[number] for number in line[:-1]]
-            found = tuple(self._worked_out(actions, line[-1]))
+            found = tuple(self._effects_of(actions, line[-1]))
             if len(line) <= _LONGEST_REMEMBERED:
                 self._changes[line] = found
         return found
 
-    def _worked_out(self, actions: Sequence[Action], ends: int) -> Iterator[_Change]:
+    def _effects_of(self, actions: Sequence[Action], ends: int) -> Iterator[_Change]:
         """Yield the effects of a line on the stack of open rules; ``ends`` rules end behind it."""
         changes: list[_Change] = []
         begun: list[tuple[Begin, list[Outline | int]]] = []

@@ -16,7 +16,7 @@ from interp.robot.api.batch import BatchCore
 from interp.robot.api.commands import MotionCommand, Transaction
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Approximation, Motion, Settings, Target
-from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm

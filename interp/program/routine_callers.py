@@ -31,7 +31,7 @@ from interp.program.load import CheckedProgram, Routine, with_main
 from interp.program.variables import is_complete, is_complete_parameter
 from interp.robot.models.stand_in import Places
 from interp.standins.completion import StandIn
-from interp.standins.signatures import Signatures
+from interp.standins.derived_declarations import Signatures
 
 #: The size of an array if the parameter has none.
 _LENGTH: Final = 8

@@ -1,4 +1,4 @@
-"""Completes a project with stand-ins for everything that it uses and does not contain.
+"""Completes a project with stand-ins for all that it, and they in turn, use and do not contain.
 
 Files of the project have priority: a stand-in is made only for a name that nothing declares. Names
 in `library` are taken from there; for other names a declaration is derived from their uses.
@@ -26,8 +26,8 @@ from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
 from interp.robot.models.stand_in import Places
+from interp.standins.derived_declarations import Signatures
 from interp.standins.library import Datum, load_library
-from interp.standins.signatures import Signatures
 from interp.standins.unreadable_lines import COUNT, UNREADABLE
 from interp.standins.unset_data import unset_data, with_values
 from interp.standins.use_reader import read_uses

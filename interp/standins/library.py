@@ -1,4 +1,4 @@
-"""The library: our own KRL versions of routines and data of controllers and packages.
+"""Reads the library: our own KRL versions of routines and data of controllers and packages.
 
 A backup often lacks the routines behind inline forms, and the data of $config.dat that they need.
 The files in ``library/`` are written from the rules and from public manuals. Each routine and each

@@ -81,7 +81,7 @@ class _Point:
 def _arm(path: Path) -> "Kinematics":
     """Return the arm of a $machine.dat. Its imports take longer than most commands."""
     with expected_extras():
-        from interp.robot.kinematics.arms import kinematics_of
+        from interp.robot.kinematics.kinematics_choice import kinematics_of
 
         return kinematics_of(read_machine_file(path))
 

@@ -57,7 +57,7 @@ def robot_options(
 def _with_torques_beside(machine: "MachineData", path: Path) -> "MachineData":
     """Return the machine with the torques of $robcor.dat in its folder, if for the same arm."""
     from interp.robot.kinematics.data_list import DataListError
-    from interp.robot.kinematics.dynamics_data import with_torques
+    from interp.robot.kinematics.gear_torques import with_torques
     from interp.robot.kinematics.machine_data import MachineDataError
     from support.files.decode import decode
     from support.files.untrusted import read_bytes

@@ -1,4 +1,4 @@
-"""Pictures of a run for a report: a film of the arm, and its path."""
+"""Pictures of a run for a report: a film of the arm with its captions, and its path."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path

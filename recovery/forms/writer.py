@@ -1,4 +1,4 @@
-"""Writes the form of lines: the text of a rule that reads all of them."""
+"""Writes the form of lines, for induction: the text of a rule that reads all of them."""
 
 from __future__ import annotations
 

@@ -53,7 +53,9 @@ class BlockEdits:
 
     def _block_hosts(self, number: int) -> list[str]:
         entered = self.hosts.entered(number)
-        found = sorted(entered & self.at.profile.of_lines or entered & self.at.profile.blocks)
+        found = sorted(
+            entered & self.at.profile.choices_of_lines or entered & self.at.profile.blocks
+        )
         # where some rules have blocks among their lines the others have none
         return [host for host in found if self._has_blocks(host)] or found
 
@@ -64,7 +66,7 @@ class BlockEdits:
     def _bodies(self, host: str) -> list[str]:
         """Return the possible bodies of a block: those of the blocks that a rule already has."""
         texts = [" ".join(body) for body in self.at.profile.bodies] or [
-            f"{rule}*" for rule in sorted(self.at.profile.loops & self.at.profile.of_lines)
+            f"{rule}*" for rule in sorted(self.at.profile.loops & self.at.profile.choices_of_lines)
         ]
         written = " ".join(self.at.grammar.by_name[host].text.split())
         return [t for t in texts if t in written] or texts[:1]

@@ -70,7 +70,7 @@ class LineEdits:
         """Return edits that allow a kind of line where another one is expected."""
         found: dict[tuple[str, str], list[int]] = defaultdict(list)
         written_out = self.hosts.written_out
-        kinds_of = sorted(self.at.profile.of_lines | written_out)
+        kinds_of = sorted(self.at.profile.choices_of_lines | written_out)
         for number, line in enumerate(self.at.lines):
             if line.is_enormous or line.keywords:
                 continue

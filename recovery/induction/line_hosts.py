@@ -81,8 +81,8 @@ class LineHosts:
         """
         before = self.at.lines[number].form.before
         if before not in self._hosts_of:
-            entered = self.entered(number) - self.at.profile.of_blocks
-            lines = sorted(entered & self.at.profile.of_lines)
+            entered = self.entered(number) - self.at.profile.choices_of_blocks
+            lines = sorted(entered & self.at.profile.choices_of_lines)
             self._hosts_of[before] = tuple(sorted(entered & self._whole_lines) + lines)
         return self._hosts_of[before]
 

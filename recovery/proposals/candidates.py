@@ -96,14 +96,14 @@ class CandidateFinder:
                 slot[0],
             ),
         )
-        for _, of_lines in promising[:most]:
-            sites = [sites[0] for sites in of_lines.values()]
-            nearer = [sites[0] for number, sites in of_lines.items() if number < core]
+        for _, choices_of_lines in promising[:most]:
+            sites = [sites[0] for sites in choices_of_lines.values()]
+            nearer = [sites[0] for number, sites in choices_of_lines.items() if number < core]
             written = [*self._of_slot(sites), *self._of_site(sites[0])]
             if nearer and len(nearer) < len(sites):
                 written += self._of_slot(nearer)
             for rank, edits in written:
-                support[edits] |= of_lines.keys()
+                support[edits] |= choices_of_lines.keys()
                 ranks[edits] = min(rank, ranks.get(edits, rank))
         expected = {edits: _gain_expected(len(support[edits]), ranks[edits]) for edits in ranks}
         in_rule: Counter[str] = Counter()
@@ -135,7 +135,7 @@ class CandidateFinder:
     def _as_block(self, rule: str, block: Block) -> RankedEdits:
         known = self.profile.grammar.by_name
         rank = self.profile.width(rule) + self.phraser.breadth(block.symbols) + len(block.symbols)
-        if rule not in self.profile.of_lines:
+        if rule not in self.profile.choices_of_lines:
             rank += NO_LINE_RULE_COST
         symbols = (*block.symbols, *self.closing(rule))
         return rank + self.similarity.dissimilarity(rule, symbols), (

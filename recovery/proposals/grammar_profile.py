@@ -1,4 +1,4 @@
-"""The profile of a grammar, by which edits are ranked as restrictive and fitting.
+"""The profile of a grammar: what kind each rule is, by which edits are ranked.
 
 It covers how many rules lead to a rule, which rules are choices of statements or operands, which
 end with a line end or are blocks, and what they contain elsewhere.
@@ -88,13 +88,13 @@ class GrammarProfile:
         return text if text == self.line_end or len(elements) == 1 else ""
 
     @cached_property
-    def of_lines(self) -> frozenset[str]:
+    def choices_of_lines(self) -> frozenset[str]:
         """Rules whose alternatives end with a line end, or are all blocks."""
         ending = {rule.name for rule in self.grammar.rules if self.closing(rule.name)}
-        return self.of_blocks.union(ending) - self.line_ends
+        return self.choices_of_blocks.union(ending) - self.line_ends
 
     @cached_property
-    def of_blocks(self) -> frozenset[str]:
+    def choices_of_blocks(self) -> frozenset[str]:
         """Rules whose alternatives are all blocks."""
         return frozenset(
             rule.name

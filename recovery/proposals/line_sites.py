@@ -42,8 +42,8 @@ class LineSiteFinder:
         blank = len(kinds) == 1
         line_rules = () if known or blank else self._rules_of_line(kinds)
         if not blank:
-            yield from self._as_alternatives(before, words)
-        yield from self._known_elsewhere(before, line_rules)
+            yield from self._as_whole_line(before, words)
+        yield from self._line_rules_here(before, line_rules)
         for site in configurations_of(self.recognizer, before):
             rule = recognizer.network.rule[site[0]]
             if rule in profile.line_ends:
@@ -67,12 +67,12 @@ class LineSiteFinder:
                     phrase = tuple(words[:-1])
                     yield EditSite("lines", rule, place, phrase, rank + 2 * UNLIKELY_COST)
 
-    def _known_elsewhere(self, before: State, line_rules: tuple[str, ...]) -> Iterator[RankedEdits]:
-        """Yield edits that accept rules for whole lines as another alternative here."""
+    def _line_rules_here(self, before: State, line_rules: tuple[str, ...]) -> Iterator[RankedEdits]:
+        """Yield edits that accept known rules of whole lines as another alternative here."""
         recognizer, profile = self.recognizer, self.profile
-        for rule in sorted(recognizer.entered(before) & profile.loops & profile.of_lines):
+        for rule in sorted(recognizer.entered(before) & profile.loops & profile.choices_of_lines):
             for line_rule in line_rules:
-                if line_rule not in profile.of_lines or line_rule == rule:
+                if line_rule not in profile.choices_of_lines or line_rule == rule:
                     continue
                 rank = profile.width(rule) + SITE_COST + self.phraser.breadth([line_rule])
                 rank += self.similarity.dissimilarity(rule, (line_rule,))
@@ -82,7 +82,7 @@ class LineSiteFinder:
         """Return whether lines of some kind can be repeated at a configuration."""
         network = self.recognizer.network
         called = {network.rule[entry] for entry, _ in network.calls[site[0]]}
-        return bool(called & self.profile.loops & self.profile.of_lines)
+        return bool(called & self.profile.loops & self.profile.choices_of_lines)
 
     def after_line_end(self, form: Form, words: list[Token]) -> Iterator[RankedEdits]:
         """Yield edits that read the line if the line end before it had been read otherwise."""
@@ -112,8 +112,8 @@ class LineSiteFinder:
                         (Insert(rule, place, text),),
                     )
 
-    def _as_alternatives(self, before: State, words: list[Token]) -> Iterator[EditSite]:
-        """Yield the line as an alternative of a rule whose alternatives are whole lines."""
+    def _as_whole_line(self, before: State, words: list[Token]) -> Iterator[EditSite]:
+        """Yield the line, with its end, as an alternative of a rule of whole lines."""
         for rule in sorted(self.recognizer.entered(before)):
             end = self.profile.closing(rule)
             if end is not None:
@@ -127,7 +127,7 @@ class LineSiteFinder:
         return tuple(sorted(whole - self.profile.line_ends))
 
     def as_new_line(self, before: State, words: list[Token]) -> Iterator[EditSite]:
-        """Yield the line as an alternative of a rule that can begin there."""
+        """Yield the line as an alternative of a rule behind which its line end can be read."""
         last = len(words) - 1
         end = [words[last][0]]
         network = self.recognizer.network

@@ -94,7 +94,7 @@ class EditSiteFinder:
     def block_rules(self, line: LinePattern) -> list[str]:
         """Return the rules for lines or blocks that can begin where a line begins."""
         rules = self.recognizer.entered(self.recognizer.restore(line.form.before))
-        return sorted(rules & (self.profile.of_lines | self.profile.blocks))
+        return sorted(rules & (self.profile.choices_of_lines | self.profile.blocks))
 
     def _sequence_at(self, site: Configuration, place: Address) -> Alternative:
         return self.profile.sequence(self.recognizer.network.rule[site[0]], place[:-1])

@@ -1,4 +1,4 @@
-"""Dialects: how the programs of a controller generation are written, and how files are stored."""
+"""Dialects: release, letter case, layout, language and encoding of a cell; no statements."""
 
 from __future__ import annotations
 

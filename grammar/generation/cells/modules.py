@@ -8,7 +8,7 @@ from typing import Final
 
 from grammar.generation.cells.data import Data
 from grammar.generation.cells.dialect import Dialect
-from grammar.generation.cells.forms import Forms
+from grammar.generation.cells.inline_forms import Forms
 from grammar.generation.cells.names import Names
 from grammar.generation.cells.points import Taught
 from grammar.generation.cells.program import Program

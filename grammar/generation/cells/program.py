@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.generation.cells.dialect import Dialect, Generation
-from grammar.generation.cells.forms import Forms
+from grammar.generation.cells.inline_forms import Forms
 from grammar.generation.cells.names import Names
 from grammar.generation.cells.points import Taught
 from grammar.generation.cells.statements import remark, set_output

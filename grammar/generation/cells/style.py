@@ -7,7 +7,7 @@ from typing import Final
 
 from grammar.generation import control_flow, statements
 from grammar.generation.cells.dialect import Dialect
-from grammar.generation.cells.forms import Forms
+from grammar.generation.cells.inline_forms import Forms
 from grammar.generation.cells.names import Names
 from grammar.generation.cells.points import axis_position, frame, position
 from grammar.generation.cells.statements import ask, careful, fold, message, remark, set_output

@@ -18,7 +18,7 @@ from grammar.syntax.references import Space
 from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain
-from interp.bytecode.compiler.array_bounds import Bound
+from interp.bytecode.compiler.buffer_sizes import Bound
 from interp.bytecode.compiler.context import Binding
 from interp.bytecode.compiler.emitter import Emitter
 from interp.bytecode.compiler.expressions import CodeMaker, Expressions

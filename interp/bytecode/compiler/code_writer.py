@@ -10,7 +10,7 @@ from typing import Any
 from grammar.semantics.types import Array, Type
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import size
-from interp.bytecode.compiler.array_bounds import Bound, Sizes
+from interp.bytecode.compiler.buffer_sizes import Bound, Sizes
 from interp.bytecode.compiler.tables import Tables
 from interp.bytecode.instruction_set.table import MAX_CELLS, shape
 from interp.bytecode.program import (

@@ -9,7 +9,7 @@ from grammar.semantics.scopes import Scope
 from grammar.semantics.symbols import Symbol
 from grammar.semantics.types import Type
 from grammar.syntax import ast
-from interp.bytecode.compiler.array_bounds import Sizes
+from interp.bytecode.compiler.buffer_sizes import Sizes
 from interp.bytecode.compiler.code_writer import Writer
 from interp.bytecode.compiler.locations import Location
 from interp.bytecode.compiler.tables import Tables

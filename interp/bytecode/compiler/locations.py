@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grammar.semantics.types import Type
-from interp.bytecode.compiler.array_bounds import Bound
+from interp.bytecode.compiler.buffer_sizes import Bound
 from support.lazy_dataclass import dataclass
 
 

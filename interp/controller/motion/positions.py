@@ -19,8 +19,8 @@ from interp.controller.state.variables import Computed, Snapshot, Variables
 from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import Position
-from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.carrier import Carrier
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import (
     AXIS_NAMES,
     EXTERNAL_NAMES,

@@ -28,7 +28,7 @@ from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import Invoke, Path
 from interp.robot.arm import Target
-from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
 from interp.robot.kinematics.placement import Placement
 from interp.values.faults import Fault, fault

@@ -3,7 +3,7 @@
 Arrays are of float64: ``(..., 6)`` for axes in degrees (mm if linear), ``(..., 4, 4)`` for
 homogeneous matrices with positions in mm. A pose is that of the flange relative to the robot's
 foot, $ROBROOT; `interp.robot.kinematics.placement` computes it from a programmed point.
-`interp.robot.kinematics.arms.kinematics_of` chooses the class for a machine.
+`interp.robot.kinematics.kinematics_choice.kinematics_of` chooses the class for a machine.
 """
 
 from __future__ import annotations

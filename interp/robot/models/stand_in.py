@@ -26,8 +26,8 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Final
 
 from grammar.syntax.source import Source
-from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.data_list import DataListError, located
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import (
     ROBOT_AXES,
     MachineData,

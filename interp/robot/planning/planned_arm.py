@@ -21,8 +21,8 @@ from interp.robot.kinematics.solution_choice import check_limits
 from interp.robot.path.programmed_targets import Programmed, check_numbers
 from interp.robot.planning.blend_zones import zone_of
 from interp.robot.planning.blending import blend_of
-from interp.robot.planning.execution import PathExecution
 from interp.robot.planning.path_events import agenda
+from interp.robot.planning.path_execution import PathExecution
 from interp.robot.planning.plan import Plan
 from interp.robot.planning.spline_blocks import block
 from interp.robot.planning.timeline import MICROSECOND, Key, Leg, Timeline, micros

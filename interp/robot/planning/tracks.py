@@ -10,8 +10,8 @@ import numpy as np
 
 from grammar.motion_kinds import AXIS_MOTIONS
 from interp.robot.arm import Motion, Settings, Target
-from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.kinematics import Array, matrix_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import IpoMode
 from interp.robot.path.axis_path import (

@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.arm import Arm, Load, Motion
-from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.kinematics import Array, matrix_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import Placement
 from interp.robot.simulation.observations import Observation, Observer, TorqueCheck

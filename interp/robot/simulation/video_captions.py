@@ -1,4 +1,4 @@
-"""Captions of frames: white letters with a fine black outline in the upper left corner."""
+"""Draws given captions: white letters with a fine black outline in the upper left corner."""
 
 from __future__ import annotations
 

@@ -10,8 +10,8 @@ import pytest
 
 from interp.port.requests import At
 from interp.robot.arm import ArmEvent, Motion, Samples, Settings
-from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.kinematics import Kinematics
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.planning.planned_arm import PlannedArm

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.syntax.source import Source
-from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.kinematics import matrix_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.solution_choice import check_limits, check_path, solve
 from interp.robot.models import default_machine, model_file
 from interp.robot.models.stand_in import Places, fitting_arm, reaching, with_assumed_limits

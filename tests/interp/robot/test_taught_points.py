@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.data_list import Key, Value, read_data_list
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solution_choice import solve

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.central_wrist import CentralWrist
 from interp.robot.kinematics.kinematics import Array, Kinematics, matrix_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import MachineData, MachineDataError
 from interp.robot.kinematics.machine_reader import read_machine
 from interp.values.poses import IDENTITY, Pose

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from interp.robot.kinematics.arms import kinematics_of
 from interp.robot.kinematics.chain import Chain, Joint
 from interp.robot.kinematics.kinematics import Array, Kinematics, matrix_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import (
     MachineData,
     MachineDataError,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solution_choice import follow
 from interp.robot.path.axis_path import JointLine, LinearExternals, PosePathCurve

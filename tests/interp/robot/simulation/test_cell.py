@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from interp.robot.arm import Load, Samples
-from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.models import default_machine
 from interp.robot.simulation.observations import Observation, TorqueCheck
 from interp.robot.simulation.scene import Scene, SceneObject

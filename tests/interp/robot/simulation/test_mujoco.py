@@ -10,7 +10,7 @@ from interp.robot.api.commands import Transaction
 from interp.robot.api.control_core import ControlCore
 from interp.robot.api.motions import MotionFactory
 from interp.robot.arm import Samples, Settings
-from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solution_choice import follow, solve

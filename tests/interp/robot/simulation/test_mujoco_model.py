@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.kinematics.machine_reader import read_machine
 from interp.robot.models import default_machine, model_file

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from interp.robot.arm import Samples
-from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.simulation.scene import Scene, SceneObject
 from interp.values.poses import Pose
 

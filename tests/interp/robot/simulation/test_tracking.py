@@ -8,7 +8,7 @@ import pytest
 
 from interp.port.requests import At
 from interp.robot.arm import Motion, Position, Samples, Settings
-from interp.robot.kinematics.arms import kinematics_of
+from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine

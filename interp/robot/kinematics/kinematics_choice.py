@@ -1,4 +1,4 @@
-"""The choice of a kinematics class for a machine."""
+"""Which kinematics solves a machine: central wrist, palletiser, numerical; or none at all."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Executes a route: adds legs to the timeline from the current state to the end or to a stop."""
+"""Moving and braking along a path: legs from the present state to the end, or to a stop."""
 
 from __future__ import annotations
 

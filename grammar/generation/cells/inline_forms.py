@@ -1,4 +1,4 @@
-"""Motions of cells: written by the inline forms of a release, or typed by hand."""
+"""Motions of cells: the folds that inline forms of a release write, or lines typed by hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Upper bounds of arrays of unknown size, for the buffers into which they are copied.
+"""Sizes of the buffers into which arrays of unknown size are copied; no index is checked here.
 
 A formal array ``X[]`` has the size of its argument. An array that is passed on :IN is copied, as
 every :IN argument [SCO-06] (unconfirmed: according to SCO-07 formal arrays are :OUT). No memory is

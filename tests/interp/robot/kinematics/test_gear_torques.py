@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from interp.robot.kinematics.dynamics_data import with_torques
+from interp.robot.kinematics.gear_torques import with_torques
 from interp.robot.kinematics.machine_data import MachineDataError
 from interp.robot.kinematics.machine_reader import read_machine
 
