@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule
+from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule, walk
 from grammar.parser.nfa import Nfa
 from support.lazy_dataclass import dataclass
 
@@ -70,19 +70,8 @@ def exact_automata(grammar: Grammar, rule: Rule) -> Callable[[tuple[int, ...]], 
 
 def _names(grammar: Grammar, rule: Rule) -> dict[str, str]:
     """Return the token names of the literals in a rule."""
-    quoted = {e.text for e in _elements(rule) if isinstance(e, Literal)}
+    quoted = {e.text for a in rule.alternatives for e in walk(a) if isinstance(e, Literal)}
     return {text: grammar.literal_tokens[grammar.fold(text)] for text in quoted}
-
-
-def _elements(rule: Rule) -> Iterable[Element]:
-    stack: list[Element] = [e for a in rule.alternatives for e in a.elements]
-    while stack:
-        element = stack.pop()
-        yield element
-        if isinstance(element, Group):
-            stack += [e for a in element.alternatives for e in a.elements]
-        elif isinstance(element, Repeat):
-            stack.append(element.item)
 
 
 class _Fragments(Nfa[Symbol]):

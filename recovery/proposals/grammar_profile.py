@@ -51,8 +51,15 @@ class GrammarProfile:
 
     def alternatives(self, rule: str) -> frozenset[str]:
         """Return the alternatives of a rule, as written."""
-        found = self.grammar.by_name[rule]
-        return frozenset(" ".join(found.source_of(a).split()) for a in found.alternatives)
+        return self._alternatives[rule]
+
+    @cached_property
+    def _alternatives(self) -> dict[str, frozenset[str]]:
+        return {
+            rule.name: frozenset(" ".join(rule.source_of(a).split()) for a in rule.alternatives)
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+        }
 
     def closing(self, rule: str) -> str | None:
         """Return the line end with which every alternative of a rule ends, or ``None``.

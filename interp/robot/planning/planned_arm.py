@@ -284,11 +284,12 @@ class PlannedArm:
 
     def _left_at(self, plan: Plan) -> Array:
         """Return the axes at which a plan was interrupted."""
+        section = next(iter(self._execution.ahead(plan.sections, self._seconds)), None)
+        if section is None:
+            return plan.programmed.axes
         axes: Array
-        for section in self._execution.ahead(plan.sections, self._seconds):
-            (axes,) = section.curve.axes(np.array([self._execution.stood_at(section)]))
-            return axes
-        return plan.programmed.axes
+        (axes,) = section.curve.axes(np.array([self._execution.stood_at(section)]))
+        return axes
 
     @property
     def _is_braked(self) -> bool:
