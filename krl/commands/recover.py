@@ -27,7 +27,6 @@ from reports.rendering.number_format import counted
 if TYPE_CHECKING:
     from grammar.notation.model import Grammar
     from recovery.growth.growth import LedgerSteps
-    from recovery.ledger.construct import Construct
     from recovery.negatives.negatives import Negative
     from recovery.records import StartRecord, SurveyRecord
     from recovery.survey.survey import Survey
@@ -118,42 +117,18 @@ def recover(
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.krl_grammar import krl_grammar
     from recovery.ledger.ledger import Ledger, replay
-    from recovery.negatives.negatives import load
 
     roots = corpus_or_ours(paths)
     check_targets(out, json_file)
     if auto:
-        from grammar.notation.foreign import read_foreign
-
-        if suffix and not grammar:
-            raise InputError(f"--suffix {suffix}: a language other than KRL needs --grammar FILE")
-        if without and (grammar or resume or strike):
-            raise InputError("--without starts from the grammar in force: give it alone")
-        first = grammar or GRAMMAR.with_name("preliminary.g4")
-        with expected_errors():
-            chosen = read_file(first, read_foreign)
-            rejected = load(negatives) if negatives else ()
-            accepted = Ledger.read(GRAMMAR.with_name("constructs")).accepted if without else ()
-        if without > len(accepted):
-            raise InputError(f"--without {without}: there are {len(accepted)} constructs")
-        name = first.name
-        gone: list[Construct] = []
-        if without:
-            from recovery.induction.induced_ledger import without_some
-
-            chosen, gone = without_some(chosen, accepted, without, seed)
-            name = f"KRL.g4 less {len(gone)} constructs"
-        for construct in gone:
-            typer.echo(f"taken out: {construct.id} {construct.title}")
         return recover_auto(
             roots,
-            chosen,
-            name,
+            grammar,
             out,
             json_file,
-            rejected,
+            negatives,
             target,
-            taken_out=gone,
+            without=without,
             fraction=hold_out,
             seed=seed,
             strike=strike or (),

@@ -3,6 +3,7 @@
 import json
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,9 +17,9 @@ if TYPE_CHECKING:
     from grammar.notation.edits import Edit
     from grammar.notation.model import Grammar
     from recovery.induction.induced_ledger import InducedLedger
+    from recovery.induction.rounds import Induction
     from recovery.induction.target_comparison import Share
     from recovery.ledger.construct import Construct
-    from recovery.negatives.negatives import Negative
 
 # The number of generated negatives that edits are tested with, drawn evenly from more, and their
 # seed, which neither a bench nor the comparison with the target uses.
@@ -28,14 +29,13 @@ _SEED = 11
 
 def recover_auto(
     roots: Sequence[Path],
-    start: "Grammar",
-    name: str,
+    grammar: Path | None,
     out: Path,
     json_file: Path | None,
-    negatives: "Sequence[Negative]",
+    negatives: Path | None,
     target: Path | None,
     *,
-    taken_out: "Sequence[Construct]" = (),
+    without: int,
     fraction: float,
     seed: int,
     strike: Sequence[str],
@@ -44,29 +44,32 @@ def recover_auto(
 ) -> int:
     """Grow a grammar from a corpus and write it, its ledger, its record and its page to ``out``.
 
-    ``taken_out`` are the constructs that the start lacks, for the record; ``suffix`` is the file
-    extension for languages other than KRL. Everything is written after each round, so that an
-    interruption loses no more than one. At the end the grown grammar is compared with ``target``.
+    It starts from ``grammar``, or from the restrictive start, or from the grammar in force less
+    ``without`` constructs. ``suffix`` is the file extension for languages other than KRL.
+    Everything is written after each round, so that an interruption loses no more than one. At the
+    end the grown grammar is compared with ``target``.
     """
     from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
     from grammar.parser.lexer import ABSENT, lexer_of
-    from recovery.induction.auto_record import record_of
     from recovery.induction.corpus_lines import held_out
     from recovery.induction.rounds import Induction
     from recovery.induction.target_comparison import compared
     from recovery.language import KRL, language_of
     from recovery.negatives.generate import evenly
-    from recovery.negatives.negatives import NegativeSet
+    from recovery.negatives.negatives import NegativeSet, load
 
-    if not 0 <= fraction < 1:
-        raise InputError(f"--hold-out {fraction:g}: not from 0 to less than 1")
     began = time.monotonic()
+    _check(grammar, without, fraction, suffix, is_continued=resume or bool(strike))
     with expected_errors():
+        start, name, taken_out = _start(grammar, without, seed)
+        rejected = load(negatives) if negatives else ()
         goal = read_file(target, read_foreign) if target else None
         language = language_of(suffix) if suffix else KRL
         files = language.files(roots)
         ledger, struck = _ledger_so_far(start, out, strike, resume=resume)
+    for construct in taken_out:
+        typer.echo(f"taken out: {construct.id} {construct.title}")
     lexer = lexer_of(ledger.start)
     for kind, what in ((lexer.line_kind, "line ends"), (lexer.name_kind, "names")):
         if kind == ABSENT:
@@ -79,44 +82,50 @@ def recover_auto(
     if not shown:
         raise InputError("no file is left to learn from: hold out less")
     generated = evenly(language.negatives(4 * _NEGATIVES, _SEED), _NEGATIVES)
-    every = NegativeSet((*negatives, *generated))
+    every = NegativeSet((*rejected, *generated))
     induction = Induction(ledger.grammar, shown, held, every, language=language, struck=struck)
-
-    def record(is_finished: bool = False, reached: dict[str, Any] | None = None) -> dict[str, Any]:
-        return record_of(
-            ledger,
-            start=name,
-            taken_out=taken_out,
-            held_out=origins,
-            seed=seed,
-            seconds=time.monotonic() - began,
-            is_finished=is_finished,
-            target=reached,
-        )
-
-    is_finished = False
-    try:
-        for done in induction.rounds():
-            ledger.add(done)
-            _say(len(ledger.rounds), ledger)
-            _write(ledger, record(), out, json_file, struck)
-        is_finished = induction.is_finished
-        if not is_finished:
-            typer.echo("stopped at the limit of rounds; --resume continues", err=True)
-    except KeyboardInterrupt:
-        typer.echo(f"interrupted; {out} holds the results so far, --resume continues", err=True)
+    written = _Output(ledger, struck, out, json_file, name, taken_out, origins, seed, began)
+    is_finished = _grow(induction, written)
     reached = None
     if target and goal:
         reached = {
             "name": target.name,
             **compared(ledger.grammar, goal, shown, held, language),
         }
-    final = record(is_finished, reached)
-    if reached:
-        _say_target(final)
-    page = _write(ledger, final, out, json_file, struck)
+    page = written.write(is_finished, reached)
     typer.echo(f"{out / 'grammar.g4'}: {len(ledger.constructs)} steps; {page}")
     return FINE
+
+
+def _check(
+    grammar: Path | None, without: int, fraction: float, suffix: str, *, is_continued: bool
+) -> None:
+    """Raise `InputError` if options contradict one another."""
+    if suffix and not grammar:
+        raise InputError(f"--suffix {suffix}: a language other than KRL needs --grammar FILE")
+    if without and (grammar or is_continued):
+        raise InputError("--without starts from the grammar in force: give it alone")
+    if not 0 <= fraction < 1:
+        raise InputError(f"--hold-out {fraction:g}: not from 0 to less than 1")
+
+
+def _start(grammar: Path | None, without: int, seed: int) -> "tuple[Grammar, str, list[Construct]]":
+    """Return the grammar to start from, its name, and the constructs that were taken out of it."""
+    from grammar.notation.foreign import read_foreign
+    from grammar.notation.g4 import read_file
+    from grammar.notation.generate import GRAMMAR
+    from recovery.induction.induced_ledger import without_some
+    from recovery.ledger.ledger import Ledger
+
+    file = grammar or GRAMMAR.with_name("preliminary.g4")
+    start = read_file(file, read_foreign)
+    if not without:
+        return start, file.name, []
+    accepted = Ledger.read(GRAMMAR.with_name("constructs")).accepted
+    if without > len(accepted):
+        raise InputError(f"--without {without}: there are {len(accepted)} constructs")
+    less, gone = without_some(start, accepted, without, seed)
+    return less, f"KRL.g4 less {len(gone)} constructs", gone
 
 
 def _ledger_so_far(
@@ -148,6 +157,75 @@ def _ledger_so_far(
     for construct in gone:
         typer.echo(f"struck out: {construct.id} {construct.title}")
     return InducedLedger(start, in_force(start, left), left), struck
+
+
+def _grow(induction: "Induction", written: "_Output") -> bool:
+    """Write what each round accepts; return whether nothing more is worth taking."""
+    ledger = written.ledger
+    try:
+        for done in induction.rounds():
+            ledger.add(done)
+            _say(len(ledger.rounds), ledger)
+            written.write()
+    except KeyboardInterrupt:
+        typer.echo(
+            f"interrupted; {written.out} holds the results so far, --resume continues", err=True
+        )
+        return False
+    if not induction.is_finished:
+        typer.echo("stopped at the limit of rounds; --resume continues", err=True)
+    return induction.is_finished
+
+
+@dataclass(frozen=True)
+class _Output:
+    """What a run has reached, and where it is written."""
+
+    ledger: "InducedLedger"
+    struck: "Sequence[Sequence[Edit]]"
+    out: Path
+    json_file: Path | None
+    start: str
+    taken_out: "Sequence[Construct]"
+    held_out: Sequence[str]
+    seed: int
+    began: float  # by the monotonic clock, in s
+
+    def write(self, is_finished: bool = False, reached: dict[str, Any] | None = None) -> Path:
+        """Write everything; return the path of the page. ``reached`` is the comparison."""
+        from grammar.notation.edits import to_data
+        from recovery.induction.auto_record import record_of
+        from recovery.ledger.construct_file import text_of
+        from reports.recovery.auto_page import write_auto_page
+        from support.files.atomic_write import write_atomic
+
+        ledger, out = self.ledger, self.out
+        record = record_of(
+            ledger,
+            start=self.start,
+            taken_out=self.taken_out,
+            held_out=self.held_out,
+            seed=self.seed,
+            seconds=time.monotonic() - self.began,
+            is_finished=is_finished,
+            target=reached,
+        )
+        if reached:
+            _say_target(record)
+        folder = out / "constructs"
+        wanted = {f"{construct.id}.toml": construct for construct in ledger.constructs}
+        for file in folder.glob("*.toml") if folder.is_dir() else ():
+            if file.name not in wanted:
+                file.unlink()
+        for file_name, construct in wanted.items():
+            write_atomic(folder / file_name, text_of(construct).encode())
+        write_atomic(out / "start.g4", ledger.start.text.encode())
+        write_atomic(out / "grammar.g4", ledger.grammar.text.encode())
+        struck_data = [[to_data(edit) for edit in edits] for edits in self.struck]
+        write_atomic(out / "struck.json", json.dumps(struck_data).encode())
+        write_json(record, out / "auto.json")
+        write_json(record, self.json_file)
+        return write_auto_page(record, out)
 
 
 def _say(number: int, ledger: "InducedLedger") -> None:
@@ -183,32 +261,3 @@ def _part(share: "Share") -> str:
 
 def _share(reading: dict[str, int]) -> str:
     return f"{reading['parsed']:,} of {reading['files']:,}"
-
-
-def _write(
-    ledger: "InducedLedger",
-    record: dict[str, Any],
-    out: Path,
-    json_file: Path | None,
-    struck: "Sequence[Sequence[Edit]]",
-) -> Path:
-    """Write everything; return the path of the page."""
-    from grammar.notation.edits import to_data
-    from recovery.ledger.construct_file import text_of
-    from reports.recovery.auto_page import write_auto_page
-    from support.files.atomic_write import write_atomic
-
-    folder = out / "constructs"
-    wanted = {f"{construct.id}.toml": construct for construct in ledger.constructs}
-    for file in folder.glob("*.toml") if folder.is_dir() else ():
-        if file.name not in wanted:
-            file.unlink()
-    for file_name, construct in wanted.items():
-        write_atomic(folder / file_name, text_of(construct).encode())
-    write_atomic(out / "start.g4", ledger.start.text.encode())
-    write_atomic(out / "grammar.g4", ledger.grammar.text.encode())
-    struck_data = [[to_data(edit) for edit in edits] for edits in struck]
-    write_atomic(out / "struck.json", json.dumps(struck_data).encode())
-    write_json(record, out / "auto.json")
-    write_json(record, json_file)
-    return write_auto_page(record, out)
