@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from grammar.check.analysis.context import placed
 from grammar.syntax import ast
-from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
 from interp.controller.controller import Controller
 from interp.controller.inputs.input_script import Script
@@ -20,26 +19,20 @@ from interp.controller.scheduler import HOUR, RunOutcome
 from interp.controller.state.profile import Profile
 from interp.controller.state.trace import WORLD_KINDS, TaskSink, Trace, TraceEvent
 from interp.executors import EXECUTORS, Prepared, available
+from interp.machine_choice import (
+    ChosenMachine,
+    machine_or_stand_in,
+    own_machine,
+    with_own_torques,
+)
 from interp.port.events import EVERY_KIND, Kind
 from interp.port.executor import Executor
 from interp.port.requests import Value
-from interp.program.load import CheckedProgram, Limits, Unit
+from interp.program.load import CheckedProgram, Limits, Routine, Unit
 from interp.program.variables import data_lists
 from interp.robot.api.batch import BatchCore
 from interp.robot.api.control_core import ControlCore, Switch
-from interp.robot.kinematics.data_list import DataListError
-from interp.robot.kinematics.gear_torques import with_torques
-from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
-from interp.robot.kinematics.machine_reader import read_machine
-from interp.robot.models import default_machine, model_file
-from interp.robot.models.stand_in import (
-    NO_MACHINE,
-    arm_or_stand_in,
-    machine_data_of,
-    reaching,
-    understood,
-    with_assumed_limits,
-)
+from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.planning.deferred_arm import DeferredArm
 from interp.robot.simulation.factory import RobotName, make_robot
 from interp.robot.simulation.robot import Robot
@@ -61,7 +54,6 @@ __all__ = [
     "RunResult",
     "RunSetup",
     "available",
-    "machine_of_program",
     "run_program",
     "submit_of",
 ]
@@ -160,31 +152,15 @@ def run_program(
     """
     if isinstance(prepared, CheckedProgram):
         prepared = Prepared(prepared, setup.routine, [setup.submit])
-    program, profile, note, is_incomplete = prepared.program, setup.profile, "", False
-    program.start(prepared.routine)  # what is wrong with it is said alike for all executors
-    values = _system_values(program)
-    if setup.robot_file is not None:
-        machine = setup.robot_file.machine
-    elif setup.machine is not None:
-        machine = setup.machine
-    elif setup.is_tolerant:
-        sources = _own_sources(program)
-        starts = program.starts(prepared.routine, setup.submit)
-        used = [unit.source for unit in program.reached(*starts) if unit.module.folder != FOLDER]
-        machine, note = arm_or_stand_in(sources, _machine_of(profile), used)
-        is_other = bool(note) and machine_data_of(sources) is not None
-        is_incomplete = is_other or bool(program.used_stand_ins(*starts))
-        if note and not is_other:
-            fitting = reaching(machine, (one.source.text for one in program.reached(*starts)))
-            if is_incomplete or (fitting is not machine and setup.skips_failures):
-                machine = with_assumed_limits(fitting)
-                note = f"{NO_MACHINE}: {machine.name} is used instead, without axis limits"
+    program = prepared.program
+    starts = program.starts(prepared.routine, setup.submit)  # says what is wrong with them
+    chosen, is_incomplete = _chosen_machine(program, starts, setup)
+    machine, profile, torque_note = chosen.machine, setup.profile, ""
+    if setup.is_tolerant:
         profile = replace(profile, is_tolerant=is_incomplete, brings_arm=setup.skips_failures)
-    else:
-        machine = machine_of_program(program, profile)
-    torque_note = ""
     if setup.robot == "mujoco" and setup.machine is None and setup.robot_file is None:
-        machine, torque_note = _with_torques(machine, program)
+        machine, torque_note = with_own_torques(machine, program)
+    values = _system_values(program)
     start = setup.start or _home(values, machine, _BENT if is_incomplete else _UPRIGHT)
     arm = _arm(machine, start, setup.robot_file)
     if setup.make_robot is not None:
@@ -192,7 +168,6 @@ def run_program(
     else:
         robot = make_robot(setup.robot, machine, profile.cycle, setup.scene, setup.robot_file)
     tracking = _tracking(arm, robot, machine, start, setup)
-    starts = program.starts(prepared.routine, setup.submit)
     arguments = _stand_in_arguments(program.reached(*starts)) if setup.is_traced else None
     trace = Trace(take, kinds=_kinds(program, setup), arguments=arguments)
     sink, submit_sink = _sinks(trace, program, setup)
@@ -233,10 +208,30 @@ def run_program(
         tuple(start),
         controller,
         executor,
-        note,
+        chosen.note,
         tracking.observations() if tracking is not None else (),
         torque_note,
     )
+
+
+def _chosen_machine(
+    program: CheckedProgram, starts: Sequence[Routine], setup: RunSetup
+) -> tuple[ChosenMachine, bool]:
+    """Return the arm of a run, and whether the run must tolerate what the project lacks."""
+    lacks_files = setup.is_tolerant and bool(program.used_stand_ins(*starts))
+    given = setup.robot_file.machine if setup.robot_file is not None else setup.machine
+    if given is not None:
+        return ChosenMachine(given), lacks_files
+    if not setup.is_tolerant:
+        return ChosenMachine(own_machine(program, setup.profile)), False
+    chosen = machine_or_stand_in(
+        program,
+        setup.profile,
+        program.reached(*starts),
+        lacks_files=lacks_files,
+        skips_failures=setup.skips_failures,
+    )
+    return chosen, lacks_files or chosen.is_other
 
 
 def _system_values(program: CheckedProgram) -> Mapping[str, Value]:
@@ -365,50 +360,6 @@ def submit_of(program: CheckedProgram) -> str | None:
         if unit.module.suffix == ".sub" and routines and routines[0].node.name.key == "SPS":
             return routines[0].name
     return None
-
-
-def _own_sources(program: CheckedProgram) -> list[Source]:
-    """Return the files of the project itself, without stand-ins."""
-    units = program.units.values()
-    return [unit.source for unit in units if unit.module.folder != FOLDER]
-
-
-def _with_torques(machine: MachineData, program: CheckedProgram) -> tuple[MachineData, str]:
-    """Return the machine with the torques in the project's $robcor.dat, or why it has none."""
-    for unit in program.units.values():
-        if unit.module.name == "$ROBCOR" and unit.module.suffix == ".dat":
-            try:
-                return with_torques(machine, unit.source.text, unit.source.path), ""
-            except (DataListError, MachineDataError) as error:
-                return machine, str(error)
-    return machine, ""
-
-
-def machine_of_program(program: CheckedProgram, profile: Profile) -> MachineData:
-    """Return the arm in the project's machine data, or that of the profile.
-
-    Raises `LinkError` if the project has machine data of an arm that is not understood.
-    """
-    source = machine_data_of(_own_sources(program))
-    if source is not None:
-        try:
-            return understood(source)
-        except (DataListError, MachineDataError) as error:
-            raise LinkError(str(error)) from error
-    return _machine_of(profile)
-
-
-def _machine_of(profile: Profile) -> MachineData:
-    """Return the arm that a profile names; raises `LinkError` if there is none."""
-    if profile.machine == default_machine().name.lower():
-        return default_machine()
-    path = model_file(f"{profile.machine}.dat")
-    try:
-        return read_machine(path.read_text(encoding="utf-8"), path.name)
-    except OSError as error:
-        raise LinkError(f"the profile names an unknown arm: {profile.machine}") from error
-    except (DataListError, MachineDataError) as error:
-        raise LinkError(str(error)) from error
 
 
 def _home(

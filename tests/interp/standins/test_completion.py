@@ -447,6 +447,14 @@ def test_a_point_behind_a_path_that_cannot_be_followed_is_reached(motion: str) -
     assert 2 == len(_planned(strict))
 
 
+def test_failing_statements_are_skipped_on_an_arm_that_is_given() -> None:
+    """Stand-ins make a run tolerant, wherever its arm comes from."""
+    machine = read_machine(WITH_TABLE.read_text(), "$machine.dat")
+    setup = RunSetup(is_tolerant=True, skips_failures=True, machine=machine)
+    run = run_program(_main("OPT ( )\nLIN {X 9000.0}\nPTP {A1 5.0}\n"), setup)
+    assert (("end", ""), ["PTP"]) == (_outcome(run), _planned(run))
+
+
 def test_nothing_is_skipped_in_a_complete_project() -> None:
     """What fails there is the program's own fault, which ends it."""
     program = _main("N=N+1\n", declared="INT N\n")
