@@ -100,12 +100,12 @@ class Controller:
         frames = FramesInForce(state.variables, machine, arm.core)
         positions = Positions(state, arm.core, frames, tracking)
         queue = MotionQueue(state, arm.core, outputs, positions, frames, tracking)
-        connect_computed(state, arm.core, queue)
+        channels = Channels(state.clock)
+        connect_computed(state, arm.core, queue, channels)
         tasks = [_task("robot", "$RINT_LIST", state, executor, sink)]
         if submit is not None:
             tasks.append(_task("submit", "$SINT_LIST", state, submit, submit_sink))
         panel = OperatorPanel(state, arm, tasks)
-        channels = Channels(state.clock)
         player = ScriptPlayer(script, state, panel, channels)
         automatic = AutomaticInputs(script, state)
         advance = AdvanceRun(state, queue)
@@ -149,7 +149,6 @@ class Controller:
         self.core = arm.core
         self.variables = state.variables
         self.automatic_inputs = automatic
-        self.skipped = state.skipped
         self._queue = queue
         self._state = state
 
@@ -157,6 +156,11 @@ class Controller:
     def points(self) -> list[PlannedPoint]:
         """The end points of all planned motions, except those that end where they start."""
         return self._queue.points
+
+    @property
+    def skipped(self) -> Mapping[tuple[str, int], Exception]:
+        """Statements that failed and were skipped, each with the reason of its first failure."""
+        return self._state.skipped
 
     @property
     def arm(self) -> ArmState:

@@ -101,7 +101,7 @@ class Scheduler:
         After a `halt` a further call is START. Raises `ScriptError` for a value that a variable
         cannot have.
         """
-        outcome = self._run_until(min(until, self.stop or HOUR))
+        outcome = self._run_until(until if self.stop is None else min(until, self.stop))
         if self.tracking is not None:
             try:
                 self.tracking.settle(self.state.clock.now)
@@ -160,7 +160,6 @@ class Scheduler:
             before = now
             for task in self.tasks:
                 self._run(task)
-            self._collect()
         is_over = self._failed is not None and self.arm.is_standing and not self._is_finishing
         if self._outcome is None and self._failed is not None and is_over:
             self._outcome = replace(self._failed, time=clock.now)
@@ -173,8 +172,8 @@ class Scheduler:
         for task in self.tasks:
             if task.is_over or task.is_halted or self.panel.is_holding(task):
                 continue
-            if task.blocked is not None:
-                for signal in list(task.signals.values()):
+            for signal in list(task.signals.values()):
+                if task.blocked is not None:  # the program may have ended meanwhile
                     self.cyclic.enter_signal(task, signal)
                     self._run(task)
             try:
@@ -265,7 +264,9 @@ class Scheduler:
         """
         robot, *others = self.tasks
         is_alone = not self.queue.pending and all(task.is_over for task in others)
-        if robot.levels or not (begins or (is_alone and not self.waits.is_spent(robot))):
+        left = self.waits.requests_left(robot, self.state.profile.requests)
+        is_spent = robot.slice_end == self.waits.next_slice(robot) and robot.spent >= left
+        if robot.levels or not (begins or (is_alone and not is_spent)):
             return int(begins)
         clock = self.state.clock
         times = [self._limit + 1, self._next_time()]
@@ -277,6 +278,7 @@ class Scheduler:
 
     def _answer(self, task: Task, request: Request) -> Answer:
         """The answer to a request; one too many in a slice waits for the next slice."""
+        task.at = request.at
         match request:
             case End():
                 return self.levels.leave(task) if task.levels else self._end(task, request)
@@ -284,7 +286,6 @@ class Scheduler:
                 self._fail(task, request)
                 return None
             case Crash(at, reason):
-                task.is_over = True
                 self._outcome = RunOutcome(
                     "crash", self.state.clock.now, at, RuntimeFailure(reason)
                 )
@@ -306,7 +307,6 @@ class Scheduler:
         exempt = task.exempt_line
         if exempt is not None and (request.at.file, request.at.line) != exempt:
             task.exempt_line = None
-        task.last_at = request.at
         self.state.trace.origin = task.name, request.at
         if not isinstance(request, REPEATABLE):
             self.quiet.acts += 1
@@ -319,10 +319,10 @@ class Scheduler:
         return answer
 
     @property
-    def _changes(self) -> int:
-        """How often a program has changed a signal, a system variable or where the arm goes."""
-        changes = self.state.variables.writes + self.state.signals_changed + len(self.queue.points)
-        return changes - self.quiet.automatic.count
+    def _changes(self) -> tuple[int, int]:
+        """How often programs have changed a system variable or a signal, and where the arm goes."""
+        changes = self.state.variables.writes + self.state.signals_changed
+        return changes - self.quiet.automatic.count, len(self.queue.points)
 
     def _end(self, task: Task, request: End) -> Answer:
         """The program has ended once the arm has come to where it left it [ADV-07]."""

@@ -27,7 +27,7 @@ from interp.tree.names import find_text
 from interp.tree.places import LocalPlace, Place, SystemPlace, element, member, of_type
 from interp.tree.run import Frame, ProgramState, Steps
 from interp.values.faults import LinkError, fault
-from interp.values.values import ArrayValue, StructureValue, Value, copied, index
+from interp.values.values import Value, copied, index
 
 _MOST_SIGNALS = 8
 
@@ -153,10 +153,7 @@ class Designators(ABC):
             return
         old = place.get()
         place.set(value)
-        new = place.get()
-        # Compared as text, because 1, 1.0 and TRUE are equal in Python, and so are 0.0 and -0.0.
-        if isinstance(new, StructureValue | ArrayValue) or repr(old) != repr(new):
-            self.run.changes += 1
+        self.run.stored(old, place.get())
         if self.run.assignments is not None:
             self.run.assignments.assign(self.at(), place.path, copied(place.get()))
 

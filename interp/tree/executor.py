@@ -27,7 +27,7 @@ from interp.port.requests import (
 )
 from interp.program.load import CheckedProgram, Limits
 from interp.program.statement_paths import routine_at, way_to
-from interp.program.variables import MOST_CELLS, too_large
+from interp.program.variables import too_large
 from interp.tree.memory import fill_data
 from interp.tree.run import Call, Frame, Guard, ProgramState, Steps
 from interp.tree.statements import Resumed, Selected, Statements
@@ -84,7 +84,7 @@ class TreeExecutor:
             fill_data(self._run)
         self._data_cells: int = self._run.cells
         start = program.start(routine)
-        is_large = self._run.cells + self._run.size_of(start) > MOST_CELLS
+        is_large = not self._run.has_room(start)
         self._stack = [self._active(Call(start, {}))]
         self._open: Request | None = None
         self._is_asked = False
@@ -266,8 +266,7 @@ class TreeExecutor:
     def _called(self, call: Call, stack: list[_Active]) -> Fault | None:
         """Push a routine; return ``None``, or a fault if the stack or the memory is full."""
         run = self._run
-        is_full = run.cells + run.size_of(call.routine) > MOST_CELLS
-        if is_full or run.depth >= run.limits.depth:
+        if run.depth >= run.limits.depth or not run.has_room(call.routine):
             return fault("stack")
         if run.calls is not None:
             run.changes += 1

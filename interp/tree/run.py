@@ -19,10 +19,11 @@ from grammar.syntax import ast
 from interp.port.events import Sink, wanting
 from interp.port.requests import At, CodeHandle, Request, Slice
 from interp.program.load import CheckedProgram, Limits, Routine, Unit
-from interp.program.variables import cells_of_routine
+from interp.program.variables import MOST_CELLS, cells_of_routine
 from interp.tree.places import LocalPlace, Place, SystemPlace
 from interp.values.builtins import WEIGHTS, Randomness
 from interp.values.faults import LinkError
+from interp.values.values import ArrayValue, StructureValue, Value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -160,6 +161,12 @@ class ProgramState:
         self.due = self.begun + self.limits.per_slice
         self.changes += 1
 
+    def stored(self, old: Value | None, new: Value | None) -> None:
+        """Note that a value was stored in place of another."""
+        # Compared as text, because 1, 1.0 and TRUE are equal in Python, and so are 0.0 and -0.0.
+        if isinstance(new, StructureValue | ArrayValue) or repr(old) != repr(new):
+            self.changes += 1
+
     def random(self) -> float:
         """Return the next random number, in [0, 1)."""
         self.changes += 1
@@ -186,6 +193,10 @@ class ProgramState:
         if size is None:
             size = self._sizes[routine] = cells_of_routine(self.program, routine)
         return size
+
+    def has_room(self, routine: Routine) -> bool:
+        """Return whether the variables of a routine fit into the memory that is left."""
+        return self.cells + self.size_of(routine) <= MOST_CELLS
 
     def defer(
         self, node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake, frame: Frame

@@ -51,7 +51,7 @@ from interp.values.values import (
 )
 
 #: The longest text [FCT-04], so also the largest width and precision.
-_LONGEST = 2047
+LONGEST = 2047
 #: The largest number of variables in one call.
 _MOST = 10
 
@@ -89,7 +89,7 @@ def _pieces(pattern: str) -> Iterator[str | _Specification]:
 
 def _count(digits: str | None) -> int | None:
     number = int(digits) if digits else None
-    if number is not None and number > _LONGEST:
+    if number is not None and number > LONGEST:
         raise _Mismatch
     return number
 
@@ -306,8 +306,6 @@ def _number(letter: str, digits: str) -> int | float | None:
         return real_of(digits)
     if letter in "di":
         return integer_of(digits)
-    if len(digits) > len("0x") + 32:
-        return None
     number = int(digits, 16 if letter == "x" else 10)
     if number > 0xFFFFFFFF:
         return None

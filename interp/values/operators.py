@@ -202,7 +202,8 @@ def select(operator: str, *kinds: Kind) -> Selection | None:
     """
     table = BINARY if len(kinds) == 2 else UNARY
     if operator == "+" and len(kinds) == 1:
-        return Selection(((),), None, kinds[0]) if kinds[0] in ("INT", "REAL") else None
+        (kind,) = kinds
+        return Selection(((),), None, kind) if kind in ("INT", "REAL") else None
     if operator not in table:
         raise ValueError(f"{operator!r} is no operator of so many operands: {len(kinds)}")
     for name in table[operator]:
@@ -283,6 +284,7 @@ def _applied(selection: Selection | None, operands: tuple[Value, ...]) -> Value:
         for step in steps:
             values[place] = step.function(values[place])
     if selection.primitive is None:
-        return operands[0]
+        (same,) = operands
+        return same
     result: Value = selection.primitive.function(*values)
     return result

@@ -333,11 +333,9 @@ def converted(value: Value, to: Type) -> Value:
         assert isinstance(target, StructureValue | ArrayValue)
         fill(target, value)
         return target
-    if isinstance(to, Enumeration):
-        if isinstance(value, EnumValue) and is_same(value.type, to):
-            return value
-        raise fault("inadmissible")
     match to, value:
+        case (Enumeration(), EnumValue()) if is_same(value.type, to):
+            return value
         case (Scalar("BOOL"), bool()):
             return value
         case (_, bool()):

@@ -249,8 +249,8 @@ def test_cases_that_state_what_the_code_cites_are_tried() -> None:
         (
             "io/analog_range",
             "controller.state.signals:Signals._put_analog",
-            "-1.0 <= value <= 1.0",
-            "-1.0 < value <= 1.0",
+            "-1.0 <= number <= 1.0",
+            "-1.0 < number <= 1.0",
             "soft",
         ),
     ],

@@ -25,7 +25,7 @@ from typing import Final
 
 from interp.controller.inputs.input_script import Assign, Script
 from interp.controller.state.state import ControllerState
-from interp.controller.state.trace import path_text
+from interp.controller.state.trace import TaskName, path_text
 from interp.port.requests import At, Path
 from support.lazy_dataclass import dataclass
 
@@ -99,6 +99,8 @@ class AutomaticInputs:
         self.waited: dict[At, tuple[int, tuple[str, ...]]] = {}
         self._names: dict[str, None] = {}
         self._before = 0
+        #: The number of motions that the program had planned when it last changed something.
+        self._planned = 0
 
     @property
     def is_on(self) -> bool:
@@ -122,8 +124,10 @@ class AutomaticInputs:
         assert self._after is not None, "it fulfils waits"
         return self._after * (_FLAG_DELAY if self._changes[0][0][0] == "$FLAG" else 1)
 
-    def was_read(self, path: Path, at: At) -> None:
+    def was_read(self, task: TaskName, path: Path, at: At) -> None:
         """Note that a line has read a variable; change an input if it has waited long enough."""
+        if not self.is_on or task != "robot":
+            return
         self._names[path_text(path)] = None
         places = dict.fromkeys(_places(path))
         if places:
@@ -132,18 +136,29 @@ class AutomaticInputs:
             if due:
                 self._go_on(at, due[0].key, due[0].read)
 
-    def begin(self, *, has_moved: bool = False) -> None:
-        """Note that the program has come to a WAIT FOR, or has changed something."""
+    def changed(self, planned: int) -> None:
+        """Note that the robot's program has changed something, and has ``planned`` motions."""
+        if planned != self._planned:
+            self._planned = planned
+            self._standing.clear()
+            self._since = None
+        self._begin()
+
+    def begin(self, task: TaskName) -> None:
+        """Note that a program has come to a WAIT FOR."""
+        if task == "robot":
+            self._begin()
+
+    def _begin(self) -> None:
         self._polls.clear()
         self._names.clear()
-        if has_moved:
-            self._standing.clear()
-        is_standing = self._since is not None and self._since[0] == self._standing.key
-        if has_moved or not is_standing:
+        if self._since is not None and self._since[0] != self._standing.key:
             self._since = None
 
-    def was_false(self, at: At) -> None:
+    def was_false(self, task: TaskName, at: At) -> None:
         """Note that the condition of a WAIT FOR was FALSE; change an input if due."""
+        if task != "robot":
+            return
         self._polls.since.clear()
         self._standing.since.clear()
         self._go_on(at, at, self._polls.read)

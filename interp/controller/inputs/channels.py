@@ -20,7 +20,7 @@ from interp.controller.state.messages import own_fault
 from interp.controller.state.predefined_values import empty_structure, word
 from interp.port.requests import Value
 from interp.values.faults import fault
-from interp.values.formats import sread, swrite
+from interp.values.formats import LONGEST, sread, swrite
 from interp.values.values import (
     ArrayValue,
     EnumValue,
@@ -34,11 +34,10 @@ from interp.values.values import (
 )
 from support.lazy_dataclass import dataclass
 
-_LONGEST: Final = 2047
 _READ_VARIABLES: Final = 6
 _WRITTEN_VALUES: Final = 4
-#: Channels that are open from the start, with the handles that $CMD and $FCT_CALL contain.
-COMMANDS: Final = {"$CMD": 1, "$FCT_CALL": 2}
+#: Variables that contain the handle of a channel that is open from the start.
+COMMANDS: Final = ("$CMD", "$FCT_CALL")
 
 
 def state_value(result: str, hits: int = 0, length: int = 0) -> StructureValue:
@@ -73,11 +72,9 @@ class Channels:
 
     clock: Clock
     listeners: list[Callable[[str, str], None]] = field(default_factory=list)
-    _handles: dict[int, str] = field(
-        default_factory=lambda: {handle: name[1:] for name, handle in COMMANDS.items()}
-    )
+    _handles: dict[int, str] = field(default_factory=dict)
     _data: dict[str, deque[str]] = field(default_factory=lambda: defaultdict(deque))
-    _last: int = len(COMMANDS)
+    _last: int = 0
 
     def receive(self, channel: str, text: str) -> None:
         """Queue a text that the peer of a channel sends."""
@@ -89,10 +86,13 @@ class Channels:
 
     def open(self, arguments: Arguments) -> Changes:
         """COPEN(:NAME, handle): open a channel."""
-        name = text_of(known(arguments[0])).upper().lstrip(":")
+        return {1: self.opened(text_of(known(arguments[0])).upper().lstrip(":"))}
+
+    def opened(self, name: str) -> int:
+        """Open a channel, and return its handle."""
         self._last += 1
         self._handles[self._last] = name
-        return {1: self._last}
+        return self._last
 
     def close(self, arguments: Arguments) -> Changes:
         """CCLOSE(handle, state): close a channel; unread data is lost."""
@@ -106,7 +106,7 @@ class Channels:
         if len(arguments) < _WRITTEN_VALUES:
             raise fault("argument")
         name = self._name(arguments[0])
-        target = empty(Array(CHAR, (_LONGEST,)))
+        target = empty(Array(CHAR, (LONGEST,)))
         assert isinstance(target, ArrayValue)
         pattern, values = known(arguments[3]), [known(one) for one in arguments[4:]]
         if not values:

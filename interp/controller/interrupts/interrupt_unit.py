@@ -18,8 +18,8 @@ from interp.controller.state.tasks import ALWAYS, Answer, Blocked, Level, Task
 from interp.port.requests import BrakeArm, DeclareInterrupt, Request, Resume, SwitchInterrupt
 from interp.robot.api.commands import CallCommand
 
-#: The priorities that the system assigns for PRIO=-1 [TRG-06].
-_SYSTEM: Final = range(40, 81)
+#: The priority of PRIO=-1, for which the system may pick any of 40 to 80 [TRG-06].
+_SYSTEM: Final = 40
 
 
 class InterruptUnit:
@@ -66,13 +66,9 @@ class InterruptUnit:
         """Enter what is pending, if its priority is higher than that of what runs [INT-05]."""
         interrupt = task.interrupts.next()
         call = min(self._queue.fired, key=_priority, default=None) if task.name == "robot" else None
-        if call is not None:
-            priority = _priority(call)
-            if interrupt is None or priority <= interrupt.number:
-                if priority < task.priority:
-                    self._enter_call(task, call, priority)
-                return
-        if interrupt is not None and interrupt.number < task.priority:
+        if call is not None and (interrupt is None or _priority(call) <= interrupt.number):
+            self._enter_call(task, call, _priority(call))
+        elif interrupt is not None and interrupt.number < task.priority:
             interrupt.has_come = False
             self._levels.enter(
                 task,
@@ -84,15 +80,12 @@ class InterruptUnit:
             )
 
     def _enter_call(self, task: Task, command: CallCommand, priority: int) -> None:
-        self._queue.fired.remove(command)
-        call = _call(command)
-        if call.trigger.priority == -1:
-            taken = {level.priority for level in task.levels}
-            free = [one for one in _SYSTEM if one not in taken and one < task.priority]
-            if not free:
-                raise message_fault(1615)
-            priority = free[-1] if task.levels else free[0]
-        self._levels.enter(task, "trigger", priority, call.trigger.at, call.action, call=command)
+        if priority < task.priority:
+            self._queue.fired.remove(command)
+            call = _call(command)
+            self._levels.enter(
+                task, "trigger", priority, call.trigger.at, call.action, call=command
+            )
 
     # ---------------------------------------------------------------------- BRAKE and RESUME
 
@@ -161,6 +154,6 @@ def _call(command: CallCommand) -> TriggerCall:
 
 
 def _priority(command: CallCommand) -> int:
-    """Return the priority of a trigger's action; that of PRIO=-1 is chosen when it is entered."""
+    """Return the priority of a trigger's action; an assignment has none and always runs."""
     priority = _call(command).trigger.priority
-    return ALWAYS if priority is None else _SYSTEM[0] if priority == -1 else priority
+    return ALWAYS if priority is None else _SYSTEM if priority == -1 else priority

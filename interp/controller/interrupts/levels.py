@@ -43,6 +43,7 @@ class Levels:
         signal: SwitchSignal | None = None,
     ) -> None:
         """Push a level; its code runs when the task runs next."""
+        assert task.blocked is not None, "only a program that waits is interrupted"
         base = self._state.variables.read(("$BASE",)) if kind == "interrupt" else None
         level = Level(
             kind, priority, at, task.executor.depth, task.blocked, base, interrupt, call, signal
@@ -51,7 +52,7 @@ class Levels:
             self._state.trace.record(task.name, "interrupt_enter", at, priority=priority)
         task.executor.enter(code)
         task.levels.append(level)
-        task.blocked, task.reply = None, None
+        task.at, task.blocked, task.reply = at, None, None
 
     def leave(self, task: Task) -> Answer:
         """End the top level; return what to wait for before the level below continues."""
@@ -80,7 +81,8 @@ class Levels:
         if level.has_braked:
             self._arm.proceed()
         saved = level.saved
-        if saved is None or not saved.is_open:
+        task.at = saved.request.at
+        if not saved.is_open:
             return saved
         again = task.executor.advance(None)
         if again != saved.request:

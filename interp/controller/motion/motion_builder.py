@@ -37,7 +37,7 @@ from interp.robot.arm import (
 )
 from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
 from interp.values.poses import IDENTITY
-from interp.values.values import ArrayValue, StructureValue
+from interp.values.values import ArrayValue, StructureValue, known
 
 _LOADS: Final = ("$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3")
 #: The motion that brings the arm to the end of a line with which a program begins.
@@ -73,9 +73,16 @@ def is_complete(target: Target) -> bool:
     return set(AXIS_NAMES) <= set(target) or set("XYZABCST") <= set(target)
 
 
-def _numbers(value: Any, default: float) -> tuple[float, ...]:
-    found: list[Any] = list(value) if isinstance(value, ArrayValue) else []
-    return tuple(float(default if one is None else one) for one in found)
+def _numbers(value: Any) -> tuple[float, ...]:
+    """Return the elements of an array; faults ``uninitialised`` if one has no value [TYP-13]."""
+    found: list[Any] = [known(one) for one in value] if isinstance(value, ArrayValue) else []
+    return tuple(map(float, found))
+
+
+def _loads(values: Snapshot) -> dict[str, Load]:
+    """Return the loads that have a mass, by the names of their variables."""
+    found = {name: _load(values.get(name)) for name in _LOADS}
+    return {name: load for name, load in found.items() if load is not None}
 
 
 def _load(value: Any) -> Load | None:
@@ -273,9 +280,9 @@ class MotionBuilder:
             *_pair(velocity, acceleration, "CP"),
             _pair(velocity, acceleration, "ORI1"),
             _pair(velocity, acceleration, "ORI2"),
-            _numbers(values["$VEL_AXIS"], 100.0) + _numbers(values["$VEL_EXTAX"], 100.0),
-            _numbers(values["$ACC_AXIS"], 100.0) + _numbers(values["$ACC_EXTAX"], 100.0),
-            _numbers(values["$GEAR_JERK"], 100.0),
+            _numbers(values["$VEL_AXIS"]) + _numbers(values["$VEL_EXTAX"]),
+            _numbers(values["$ACC_AXIS"]) + _numbers(values["$ACC_EXTAX"]),
+            _numbers(values["$GEAR_JERK"]),
             Approximation(
                 *(max(_number(apo, name), 0.0) for name in ("CDIS", "CPTP", "CVEL", "CORI"))
             ),
@@ -284,7 +291,7 @@ class MotionBuilder:
             self._state.mode == "T1",
             word_of(self._variables.read(("$CP_VEL_TYPE",))),
             word_of(self._variables.read(("$TARGET_STATUS",))),
-            {name: load for name in _LOADS if (load := _load(values.get(name))) is not None},
+            _loads(values),
         )
 
     def _places(self, built: PlannedMotion, triggers: Iterable[SetTrigger]) -> tuple[Place, ...]:

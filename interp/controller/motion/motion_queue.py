@@ -270,14 +270,12 @@ class MotionQueue:
             self._state.put_at(task.name, at, plain, value)
 
     def own_pending(self, task: Task) -> int:
-        """Return the number of motions that this program, or its interrupt routine, waits for.
+        """Return the number of motions that the robot's program, or its routine, waits for.
 
         These are the motions that have not ended. The motions of the interrupted program continue
         while an interrupt routine runs, so they do not block the routine [INT-08] (unconfirmed for
         advance stops in the routine).
         """
-        if task.name == "submit":
-            return 0
         return self._core.pending() if task.level is None else len(task.level.motions)
 
     @property
@@ -340,7 +338,6 @@ class MotionQueue:
                 self._ended(event, queued)
             case "cancelled" | "failed":
                 self._remove(number, task)
-                self._at_end.pop(number, None)
 
     def _started(self, queued: _QueuedMotion) -> None:
         planned = queued.planned
@@ -376,9 +373,8 @@ class MotionQueue:
         Bits 3 and 4 of Status have no meaning [POS-06].
         """
         checks = self._state.variables.read(("$CP_STATMON",))
-        if not isinstance(checks, EnumValue) or motion.parts or motion.kind in AXIS_MOTIONS:
-            return False
-        if self._state.machine is None:
+        is_path = not motion.parts and motion.kind not in AXIS_MOTIONS
+        if not isinstance(checks, EnumValue) or not is_path or self._state.machine is None:
             return False
         status, turn = self._positions.status_turn(self._positions.actual().axes)
         is_other = "S" in motion.target and (int(motion.target["S"]) ^ status) & _STATUS_BITS != 0

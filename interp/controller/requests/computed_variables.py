@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
-from interp.controller.inputs.channels import COMMANDS
+from interp.controller.inputs.channels import COMMANDS, Channels
 from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.state.predefined_values import empty_structure, word
 from interp.controller.state.signals import Signals
@@ -19,7 +19,9 @@ from interp.robot.api.control_core import ControlCore
 from interp.values.values import single
 
 
-def connect_computed(state: ControllerState, core: ControlCore, queue: MotionQueue) -> None:
+def connect_computed(
+    state: ControllerState, core: ControlCore, queue: MotionQueue, channels: Channels
+) -> None:
     """Connect the computed variables; `motion.positions` connects those of positions."""
     arm, clock, profile, states = core.arm, state.clock, state.profile, state.program_states
     computed: Mapping[str, Callable[[], Value]] = {
@@ -32,7 +34,6 @@ def connect_computed(state: ControllerState, core: ControlCore, queue: MotionQue
         "$PRO_MOVE": lambda: states["robot"] == "P_ACTIVE" and core.pending() > 0,
         "$ROB_STOPPED": lambda: arm.speed(clock.now) == 0.0,
         "$MOVE_BCO": lambda: queue.is_coincidence_run,
-        "$ON_PATH": lambda: True,
         "$ACT_ADVANCE": lambda: max(0, core.pending() - 1),  # [ADV-03]
         "$VEL_ACT": lambda: single(arm.speed(clock.now)),
         "$DISTANCE": lambda: single(arm.distances(clock.now)[0]),
@@ -50,8 +51,8 @@ def connect_computed(state: ControllerState, core: ControlCore, queue: MotionQue
     for name, compute in computed.items():
         state.variables.connect([name], Computed(compute))
     state.variables.connect(["$OUT_C"], _MainRunOutputs(state.signals))
-    for name, handle in COMMANDS.items():
-        state.variables.put((name,), handle)
+    for name in COMMANDS:
+        state.variables.put((name,), channels.opened(name.lstrip("$")))
 
 
 @dataclass(frozen=True, slots=True)

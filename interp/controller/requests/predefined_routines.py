@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from grammar.semantics.predefined import PredefinedFunction, System
-from grammar.semantics.types import INT, UNKNOWN
+from grammar.semantics.types import UNKNOWN
 from interp.controller.inputs.channels import Channels, Waiting
 from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.arm_control import ArmControl
@@ -26,19 +26,19 @@ from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.predefined_values import empty_structure
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
-from interp.port.requests import Invoke, Path
+from interp.port.requests import Invoke, Path, Value
 from interp.robot.arm import Target
 from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
 from interp.robot.kinematics.placement import Placement
 from interp.values.faults import Fault, fault
-from interp.values.poses import IDENTITY, Pose
+from interp.values.poses import Pose
 from interp.values.texts import Outcome
 from interp.values.values import (
     EnumValue,
     StructureValue,
-    converted,
     copied,
+    index,
     known,
     single,
     text_of,
@@ -173,11 +173,13 @@ class PredefinedRoutines:
         return self._state.messages.show(task.name, request.at, kind, number, text), {}
 
     def _exists_message(self, _task: Task, request: Invoke) -> Outcome:
-        return self._state.messages.find(_int(request, 0)) is not None, {}
+        handle, *_ = request.arguments
+        return self._state.messages.find(_int(handle)) is not None, {}
 
     def _exists_dialogue(self, _task: Task, request: Invoke) -> Outcome:
         """Return TRUE while a dialogue has no answer; then FALSE, and the button as argument."""
-        shown = self._state.messages.find(_int(request, 0))
+        handle, *_ = request.arguments
+        shown = self._state.messages.find(_int(handle))
         if shown is None:
             return False, {}
         if shown.answer is None:
@@ -186,23 +188,26 @@ class PredefinedRoutines:
         return False, {1: shown.answer}
 
     def _answer_dialogue(self, _task: Task, request: Invoke) -> Outcome:
-        shown = self._state.messages.find(_int(request, 0))
+        handle, button, *_ = request.arguments
+        shown = self._state.messages.find(_int(handle))
         if shown is None or not shown.is_dialogue:
             return False, {}
-        shown.answer = _int(request, 1)
+        shown.answer = _int(button)
         return True, {}
 
     def _clear_message(self, _task: Task, request: Invoke) -> Outcome:
-        return self._state.messages.clear(_int(request, 0)), {}
+        handle, *_ = request.arguments
+        return self._state.messages.clear(_int(handle)), {}
 
     def _is_set(self, _task: Task, request: Invoke) -> Outcome:
-        return self._state.messages.is_set(_int(request, 0)), {}
+        number, *_ = request.arguments
+        return self._state.messages.is_set(_int(number)), {}
 
     # --------------------------------------------------------------------------------- errors
 
     def _clear_error(self, _task: Task, request: Invoke) -> Outcome:
         """ERR_CLEAR: set the number of the error to 0 [TYP-13]."""
-        error = request.arguments[0]
+        error, *_ = request.arguments
         if not isinstance(error, StructureValue):
             raise fault("argument")
         cleared = copied(error)
@@ -211,7 +216,7 @@ class PredefinedRoutines:
 
     def _raise_error(self, _task: Task, request: Invoke) -> Outcome:
         """ERR_RAISE: raise the fault that the error describes, none for number 0 (unconfirmed)."""
-        error = request.arguments[0]
+        error, *_ = request.arguments
         value = error.get("NUMBER") if isinstance(error, StructureValue) else None
         if value == 0:
             return None, {}
@@ -231,7 +236,7 @@ class PredefinedRoutines:
         [SUB-06] (which number is which is unconfirmed). The arm stays on its path in both cases.
         """
         self._state.trace.record(task.name, "brake", request.at, mode="ROB_STOP")
-        kind = request.arguments[0]
+        kind, *_ = request.arguments
         if task.name == "submit":
             is_ramp = isinstance(kind, EnumValue) and kind.name.upper() == "RAMP_DOWN"
             number = 81 if is_ramp else 82
@@ -247,12 +252,13 @@ class PredefinedRoutines:
         """FORWARD: return the pose of axes, in base and tool of the advance run [FCT-03]."""
         from interp.robot.kinematics.solution_choice import turn_of
 
-        target = target_of(known(request.arguments[0]))
+        axes_given, *_ = request.arguments
+        target = target_of(known(axes_given))
         axes = _components(target, AXIS_NAMES)
         kinematics, placement = self._kinematics()
         flange = Pose.from_matrix(kinematics.forward(axes).tolist())
         status = int(kinematics.status(axes))
-        externals = [target.get(name, 0.0) for name in EXTERNAL_NAMES]
+        externals = _externals(target)
         pose = pose_value(placement.at(externals).point(flange), status, turn_of(axes), externals)
         return pose, {1: 0}
 
@@ -260,11 +266,10 @@ class PredefinedRoutines:
         """INVERSE: return the axes of a pose; the status is 1 if it cannot be reached [FCT-03]."""
         from interp.robot.kinematics.solution_choice import solve
 
-        target = target_of(known(request.arguments[0]))
-        start = target_of(known(request.arguments[1]))
+        target, start = (target_of(known(one)) for one in request.arguments[:2])
         kinematics, placement = self._kinematics()
         point = Pose.of(*_components(target, "XYZABC"))
-        externals = [target.get(name, 0.0) for name in EXTERNAL_NAMES]
+        externals = _externals(target)
         origin = _components(start, AXIS_NAMES)
         status, turn = target.get("S"), target.get("T")
         try:
@@ -294,11 +299,12 @@ class PredefinedRoutines:
             return self._unsupported(task, request, self._newest["EK"])
         table = system.with_frames(root, offset)
         position = self._arm.core.arm.position(self._state.clock.now)
+        externals = position.axes[len(machine.axes) :]
         frame = empty_structure("FRAME")
-        pose = table.pose(position.axes[len(machine.axes) :])
-        for name, number in zip("XYZABC", pose.components, strict=True):
-            frame.set(name, single(number))
-        self._frames.couple(pose_of(frame) or IDENTITY, table)
+        numbers = [single(number) for number in table.pose(externals).components]
+        for name, number in zip("XYZABC", numbers, strict=True):
+            frame.set(name, number)
+        self._frames.couple(Pose.of(*numbers), table)
         return frame, {}
 
     def _kinematics(self) -> tuple[Kinematics, Placement]:
@@ -318,7 +324,7 @@ class PredefinedRoutines:
 
     def _size(self, _task: Task, request: Invoke) -> Outcome:
         """GETVARSIZE(#NAME): return the number of elements of an array of the controller."""
-        which = request.arguments[0]
+        which, *_ = request.arguments
         if not isinstance(which, EnumValue):
             raise fault("argument")
         name = which.name.upper()
@@ -342,11 +348,9 @@ class PredefinedRoutines:
         return False, {}
 
 
-def _int(request: Invoke, place: int) -> int:
+def _int(argument: Value | None) -> int:
     """Return an argument converted to INT."""
-    found = converted(known(request.arguments[place]), INT)
-    assert isinstance(found, int), "converted"
-    return found
+    return index(known(argument))
 
 
 def _components(target: Target, names: Sequence[str]) -> list[float]:
@@ -356,11 +360,14 @@ def _components(target: Target, names: Sequence[str]) -> list[float]:
     return [target[name] for name in names]
 
 
+def _externals(target: Target) -> list[float]:
+    """Return the external axes of a position; one that has no value is 0 (unconfirmed)."""
+    return [target.get(name, 0.0) for name in EXTERNAL_NAMES]
+
+
 def _with_parameters(text: str, parameters: Any) -> str:
     """Return the text of a message, with its parameters in place of %1 to %3."""
     for place, one in enumerate(parameters or (), start=1):
-        if not isinstance(one, StructureValue):
-            continue
         for name in ("PAR_TXT", "PAR_INT", "PAR_REAL", "PAR_BOOL"):
             value: Any = one.get(name)
             shown = text_of(value) if name == "PAR_TXT" else value

@@ -33,8 +33,7 @@ class VariableAccess:
     def read(self, task: Task, request: Read) -> Answer:
         """Return the value of a variable. Raises `Fault`."""
         path, variables = request.path, self._state.variables
-        if self._automatic.is_on and task.name == "robot":
-            self._automatic.was_read(path, request.at)
+        self._automatic.was_read(task.name, path, request.at)
         if variables.stops(str(path[0]), is_write=False):
             return self._advance.when_reached(task, request, lambda: variables.read(path))
         return variables.read(path)

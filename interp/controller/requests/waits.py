@@ -81,8 +81,6 @@ class Waits:
         self._panel = panel
         self._player = player
         self._automatic = automatic
-        #: The number of motions that have been planned.
-        self._points = 0
 
     # ------------------------------------------------------------------------------- time
 
@@ -114,17 +112,14 @@ class Waits:
 
     def poll(self, task: Task, request: Poll) -> Answer:
         """WAIT FOR: let the program evaluate its condition again in the next slice."""
-        is_robot = task.name == "robot"
         if request.is_first:
             task.polling = None
-            if is_robot:
-                self._automatic.begin()
+            self._automatic.begin(task.name)
             return self._advance.when_reached(task, request, lambda: None)
         if task.polling != request.at:
             task.polling = request.at
             self._state.trace.record(task.name, "wait", request.at)
-        if is_robot:
-            self._automatic.was_false(request.at)
+        self._automatic.was_false(task.name, request.at)
         return self.until(request, self.next_slice(task), lambda: None)
 
     def requests_left(self, task: Task, most: int) -> int:
@@ -139,11 +134,6 @@ class Waits:
         """Return whether a program has changed nothing for some time."""
         return self._state.clock.now - task.busy_at >= IDLE_AFTER
 
-    def is_spent(self, task: Task) -> bool:
-        """Return whether the robot's program has no request left in this slice."""
-        left = self.requests_left(task, self._state.profile.requests)
-        return task.slice_end == self.next_slice(task) and task.spent >= left
-
     def acted(self, task: Task, request: Request, *, has_changed: bool) -> None:
         """Note that a request was answered, which may have changed something.
 
@@ -155,8 +145,10 @@ class Waits:
         if task.name != "robot":
             return
         if has_changed or isinstance(request, _ACTS):
-            known, self._points = self._points, len(self._queue.points)
-            self._automatic.begin(has_moved=known != self._points)
+            self._automatic.changed(len(self._queue.points))
+        self._count(task, request)
+
+    def _count(self, task: Task, request: Request) -> None:
         if not isinstance(request, _UNCOUNTED) and not self.is_idle(task):
             task.unbroken += _weight(request)
             if task.unbroken >= _MOST and not self._player.has_steps:

@@ -12,11 +12,12 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Final
 
+from grammar.semantics.types import BOOL, REAL
 from interp.controller.state.clock import Clock, TimedAction
 from interp.controller.state.profile import Profile
 from interp.port.requests import Path, Value
 from interp.values.faults import fault
-from interp.values.values import single
+from interp.values.values import converted, index, single
 
 ALWAYS_TRUE: Final = 1025
 ALWAYS_FALSE: Final = 1026
@@ -75,14 +76,11 @@ class Signals:
         if name in self._analog:
             self._put_analog(name, first, value)
         elif len(path) == 2:
-            if not isinstance(value, bool):
-                raise fault("inadmissible")
-            self._put_bit(name, first, value)
+            self._put_bit(name, first, converted(value, BOOL) is True)
         else:
-            if not isinstance(value, int) or isinstance(value, bool):
-                raise fault("inadmissible")
+            number = index(value)
             for place in range(first, last + 1):
-                self._put_bit(name, place, bool(value >> (place - first) & 1))
+                self._put_bit(name, place, bool(number >> (place - first) & 1))
 
     def pulse(self, number: int, level: bool, seconds: float) -> None:
         """PULSE: set an output to a level for a time in s, then to the other level [IOT-07].
@@ -123,13 +121,13 @@ class Signals:
             self._report(name, place, value)
 
     def _put_analog(self, name: str, place: int, value: Value) -> None:
-        if not isinstance(value, int | float) or isinstance(value, bool):
-            raise fault("inadmissible")
-        if not -1.0 <= value <= 1.0:
+        number = converted(value, REAL)
+        assert isinstance(number, float), "converted"
+        if not -1.0 <= number <= 1.0:
             raise fault("invalid")
-        if self._analog[name][place] != value:
-            self._analog[name][place] = single(value)
-            self._report(name, place, single(value))
+        if self._analog[name][place] != number:
+            self._analog[name][place] = single(number)
+            self._report(name, place, single(number))
 
     def _range(self, path: Path) -> tuple[str, int, int]:
         """Return the array and the first and last index of a path."""

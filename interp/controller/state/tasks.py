@@ -63,7 +63,7 @@ class Level:
     priority: int
     at: At
     depth: int
-    saved: Blocked | None
+    saved: Blocked
     base: Value | None = None
     interrupt: Interrupt | None = None
     call: CallCommand | None = None
@@ -83,8 +83,8 @@ class Task:
     number of requests since the program last waited for time, a condition or the arm. ``triggers``
     wait for the next motion. ``busy_at`` is the time in µs at which the program last did more than
     read variables and write the values that they had. ``polling`` is the place of a waiting WAIT
-    FOR, ``last_at`` the place of the last request. ``counting`` and ``recurrent`` are the executor
-    if it has that protocol; checking each time would take longer than a slice.
+    FOR, ``at`` the place that the program has reached. ``counting`` and ``recurrent`` are the
+    executor if it has that protocol; checking each time would take longer than a slice.
     """
 
     name: TaskName
@@ -99,7 +99,7 @@ class Task:
     unbroken: int = 0
     slice_end: int = -1
     polling: At | None = None
-    last_at: At = field(default_factory=lambda: At("", 0, 0))
+    at: At = field(default_factory=lambda: At("", 0, 0))
     busy_at: int = 0
     triggers: list[SetTrigger] = field(default_factory=list)
     signals: dict[str, SwitchSignal] = field(default_factory=dict)
@@ -126,13 +126,6 @@ class Task:
     def priority(self) -> int:
         """The priority of what runs; only a lower number interrupts it."""
         return self.levels[-1].priority if self.levels else PROGRAM
-
-    @property
-    def at(self) -> At:
-        """The place that the program has reached."""
-        if self.blocked is not None:
-            return self.blocked.request.at
-        return self.level.at if self.level is not None else self.last_at
 
     def holds(self, condition: CodeHandle, read: Reader) -> bool:
         """Return whether a condition is TRUE; ``read`` reads system variables. Raises `Fault`."""

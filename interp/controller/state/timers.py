@@ -11,10 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
+from grammar.semantics.types import BOOL
 from interp.controller.state.clock import Clock
 from interp.port.requests import Path, Value
 from interp.values.faults import fault
-from interp.values.values import StructureValue
+from interp.values.values import StructureValue, converted, index
 
 
 @dataclass(slots=True)
@@ -56,20 +57,19 @@ class Timers:
         """Set, start or stop a timer, or set its flag; faults ``index``, ``inadmissible``."""
         timer = self._timer(path)
         tick = self._clock.tick
-        match path[0], value:
-            case "$TIMER", int() if not isinstance(value, bool):
-                timer.base = value
-                timer.since = None if timer.since is None else tick
-                timer.flag = None
-            case "$TIMER_STOP", bool():
-                timer.base = self._value(timer)
-                timer.since = None if value else tick
-                if not value:
-                    timer.flag = None
-            case "$TIMER_FLAG", bool():
-                timer.flag, timer.was_below = value, self._value(timer) < 0
-            case _:
-                raise fault("inadmissible")
+        if path[0] == "$TIMER":
+            timer.base = index(value)
+            timer.since = None if timer.since is None else tick
+            timer.flag = None
+            return
+        is_true = converted(value, BOOL) is True
+        if path[0] == "$TIMER_FLAG":
+            timer.flag, timer.was_below = is_true, self._value(timer) < 0
+            return
+        timer.base = self._value(timer)
+        timer.since = None if is_true else tick
+        if not is_true:
+            timer.flag = None
 
     def _value(self, timer: _Timer) -> int:
         if timer.since is None:

@@ -68,7 +68,7 @@ class Computed:
 
 #: `Live` variables that change only when an event happens, not with time alone.
 _STEADY: Final = frozenset(
-    "$IN $OUT $ANIN $ANOUT $OUT_C $STOPMESS $PRO_STATE $PRO_STATE0 $PRO_STATE1 $PRO_ACT $ON_PATH "
+    "$IN $OUT $ANIN $ANOUT $OUT_C $STOPMESS $PRO_STATE $PRO_STATE0 $PRO_STATE1 $PRO_ACT "
     "$NUM_IN $NUM_OUT $NULLFRAME $I_O_ACTCONF $T1 $T2 $AUT $EXT".split()
 )
 #: Variables whose changes are events of the trace.
@@ -92,11 +92,7 @@ class Variables:
         self._untyped_parts: dict[Path, Value] = {}
         self.writes = 0
         self.has_read_changing = False
-        self._twins = {
-            entry.twin: name
-            for name, entry in ((name, self.entry(name)) for name in _with_twins())
-            if entry is not None and entry.twin is not None
-        }
+        self._twins = _twins()
         self._with_twins = frozenset(self._twins.values())
         self._snapshot: Snapshot | None = None
         self._values["$ADVANCE"] = profile.advance
@@ -258,9 +254,6 @@ class Variables:
 
     def _give(self, name: str, value: Value) -> None:
         """Assign the initial value from a data list."""
-        if self.type_of(name) == UNKNOWN:
-            self._values[name] = copied(value)
-            return
         try:
             self._store((name,), value)
         except Fault:  # the data list declares another type, which is then the right one
@@ -268,9 +261,9 @@ class Variables:
 
 
 @cache
-def _with_twins() -> tuple[str, ...]:
-    variables = System.load().variables
-    return tuple(name for name in variables if variables[name].twin is not None)
+def _twins() -> Mapping[str, str]:
+    """Return the variables that have a twin in the main run, by its name."""
+    return {one.twin: name for name, one in System.load().variables.items() if one.twin}
 
 
 def _texts(value: Value | None) -> Any:
