@@ -88,7 +88,7 @@ class Scheduler:
     _failed: RunOutcome | None = None
     _ticked: int = -1
     _limit: int = 0
-    _answered: int = 0
+    _has_acted: bool = False
     _free_until: int = 0
 
     def __post_init__(self) -> None:
@@ -155,9 +155,9 @@ class Scheduler:
     def _settle(self) -> None:
         """Do all that happens at this time."""
         clock = self.state.clock
-        before = -1
-        while before != (now := self._answered + self.queue.count) and self._outcome is None:
-            before = now
+        self._has_acted = True
+        while self._has_acted and self._outcome is None:
+            self._has_acted = False
             for task in self.tasks:
                 self._run(task)
         is_over = self._failed is not None and self.arm.is_standing and not self._is_finishing
@@ -244,7 +244,7 @@ class Scheduler:
             except RuntimeFailure as error:  # of an interrupt, a trigger, a condition
                 self._fail(task, Fail(task.at, error))
                 return
-            self._answered += 1
+            self._has_acted = True
             task.blocked = answer if isinstance(answer, Blocked) else None
             task.reply = None if isinstance(answer, Blocked) else answer
             free_until, self._free_until = self._free_until, 0

@@ -12,8 +12,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from grammar.semantics.types import is_cartesian
-from interp.values.faults import fault
 from interp.values.poses import Pose
 from interp.values.values import StructureValue, copied, known, single
 
@@ -34,8 +32,7 @@ def composed(left: StructureValue, right: StructureValue) -> StructureValue:
     """Return ``left : right``: the pose ``right``, relative to ``left``, in the base of ``left``.
 
     The result has the type of ``right`` and all its members except X to C: Status, Turn and
-    external axes are carried over. Faults ``uninitialised`` if one of X to C has no value, and
-    ``operand`` if an operand is not a pose.
+    external axes are carried over. Faults ``uninitialised`` if one of X to C has no value.
     """
     product = _pose(left) @ _pose(right)
     result: StructureValue = copied(right)
@@ -57,8 +54,6 @@ def inverted(pose: StructureValue) -> StructureValue:
 
 def _pose(value: StructureValue) -> Pose:
     """Return X to C of a value, the first six members of every pose type, as a transform."""
-    if not is_cartesian(value.type):
-        raise fault("operand")
     numbers: list[Any] = [known(member) for member in value.members[:6]]
     x, y, z, *angles = numbers
     a, b, c = ((math.sin(one), math.cos(one)) for one in map(radians, angles))

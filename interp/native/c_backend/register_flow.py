@@ -40,7 +40,8 @@ class RegisterFlow:
         """Return the steps that can come next in the routine."""
         step = self._steps[place]
         jump = [step.d] if step.is_jump else []
-        return jump if step.name in ENDS else [*jump, place + 1]
+        is_end = step.name in ENDS or place + 1 not in self._body  # a routine that only fails
+        return jump if is_end else [*jump, place + 1]
 
     def is_next_case(self, place: int) -> bool:
         """Whether a step compares the same register as the one before, and follows only that."""
