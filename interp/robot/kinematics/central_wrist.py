@@ -16,7 +16,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.kinematics import Array, continued, matrix_of, nearest_turns
+from interp.robot.kinematics.kinematics import Array, continued, matrix_of, nearest_turns, wrapped
 from interp.robot.kinematics.machine_data import MachineData, MachineDataError
 from interp.values.poses import sine_cosine
 
@@ -116,9 +116,7 @@ class CentralWrist:
             a5 = sign * np.arctan2(sine, wrist[..., 2, 2])
             a4 = np.where(is_straight, self._zeros[3], a4)
             solutions.append(self._degrees(main, a4, a5, wrist))
-        degrees: Array = np.concatenate(solutions, axis=-2)
-        degrees -= 360.0 * np.ceil((degrees - 180.0) / 360.0)
-        return degrees + 0.0
+        return wrapped(np.concatenate(solutions, axis=-2))
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
         """Return the solution with the configuration of a reference: axes ``(n, 6)``, NaN if none.

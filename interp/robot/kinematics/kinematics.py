@@ -19,7 +19,8 @@ from interp.values.poses import Pose
 
 Array = npt.NDArray[np.float64]
 
-_LARGEST_STEP = 30.0  # degrees between two samples up to which a path counts as continuous
+#: Degrees between two samples up to which a path counts as continuous.
+LARGEST_STEP = 30.0
 
 
 class Kinematics(Protocol):
@@ -90,13 +91,19 @@ def nearest_turns(axes: Array, references: Array) -> Array:
     return near
 
 
+def wrapped(axes: Array) -> Array:
+    """Return axes in (-180, 180] degrees."""
+    near: Array = axes - 360.0 * np.ceil((axes - 180.0) / 360.0)
+    return near
+
+
 def continued(start: Array, path: Array) -> Array | None:
     """Return a path ``(n, 6)`` in degrees with full turns added so that it continues ``start``.
 
     Return ``None`` if an axis makes too large a step for that to be certain.
     """
     whole = np.unwrap(np.concatenate((start[None], path)), period=360.0, axis=0)
-    return whole[1:] if bool((np.abs(np.diff(whole, axis=0)) < _LARGEST_STEP).all()) else None
+    return whole[1:] if bool((np.abs(np.diff(whole, axis=0)) < LARGEST_STEP).all()) else None
 
 
 def matrix_of(pose: Pose) -> Array:

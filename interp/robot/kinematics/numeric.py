@@ -17,12 +17,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.kinematics import Array, matrix_of
+from interp.robot.kinematics.kinematics import LARGEST_STEP, Array, matrix_of, wrapped
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
 from interp.values.faults import Fault
 
 _STARTS = 96
-_MOST_SOLUTIONS = 16
 _ROUNDS = 60
 _NEAR_ROUNDS = 25
 _HOPEFUL = 20, 0.05
@@ -31,9 +30,7 @@ _MET = 1e-11
 """The norm of the error, in fractions of the size and radians, at which a pose is reached."""
 _LEAST_DAMPING = 1e-13
 _OFF = 0.002  # radians by which an arm of fewer joints may miss an orientation
-_SAME = 1e-4  # degrees below which two solutions are the same
 _TURN = 1e-9  # degrees of rounding
-_NEAR = 30.0  # degrees or mm from a reference within which a solution has the same configuration
 _COARSE = 32
 _FAR = 1e9  # mm
 
@@ -87,24 +84,26 @@ class NumericKinematics:
         return pose
 
     def inverse(self, poses: npt.ArrayLike) -> Array:
-        """Return up to 16 solutions, found from starts spread over the range of the axes."""
+        """Return the solutions found from starts spread over the range of the axes.
+
+        Each may be found several times.
+        """
         given = np.asarray(poses, dtype=np.float64)
         shape = given.shape[:-2]
         given = given.reshape(-1, 4, 4)
-        found = np.full((len(given), _MOST_SOLUTIONS, ROBOT_AXES), math.nan)
         starts = self._starts()
+        found = np.full((len(given), len(starts), ROBOT_AXES), math.nan)
         for place, pose in enumerate(given):
             if (np.abs(pose) < _FAR).all():
                 ends = self._solve(np.tile(pose, (len(starts), 1, 1)), starts, _ROUNDS)
-                solutions = _distinct(self._wrapped(self._degrees(ends)))
-                found[place, : len(solutions)] = solutions[:_MOST_SOLUTIONS]
-        return found.reshape(*shape, _MOST_SOLUTIONS, ROBOT_AXES)
+                found[place] = self._wrapped(self._degrees(ends))
+        return found.reshape(*shape, len(starts), ROBOT_AXES)
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
         """See `interp.robot.kinematics.kinematics.Kinematics.inverse_near`."""
         starts = self._held(references[:, : self._count]) * self._units
         found = self._degrees(self._solve(poses, starts, _NEAR_ROUNDS))
-        lost = (np.abs(found - self.coupled(references)) > _NEAR).any(axis=1)
+        lost = (np.abs(found - self.coupled(references)) > LARGEST_STEP).any(axis=1)
         found[lost] = math.nan
         return found
 
@@ -117,13 +116,10 @@ class NumericKinematics:
         before = np.array(start, dtype=np.float64)[None]
         known = np.empty((len(places), ROBOT_AXES))
         for row, place in enumerate(places):
-            known[row] = before = self.inverse_near(poses[place : place + 1], before)
+            known[row] = before = _found(self.inverse_near(poses[place : place + 1], before))
         between = np.arange(len(poses))
         references = np.stack([np.interp(between, places, c) for c in known.T], axis=-1)
-        path = self.inverse_near(poses, references)
-        if np.isnan(path).any():
-            raise Fault("unreachable", "the path cannot be followed", number=1366)
-        return path
+        return _found(self.inverse_near(poses, references))
 
     def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
         """See `interp.robot.kinematics.kinematics.Kinematics.status`."""
@@ -175,24 +171,11 @@ class NumericKinematics:
 
     def _missing(self, wanted: Array, pose: Array) -> Array:
         """Return the errors of poses ``(n, 6)``: scaled lengths and rotation vectors in rad."""
+        from scipy.spatial.transform import Rotation
+
         turn = wanted[:, :3, :3] @ np.swapaxes(pose[:, :3, :3], 1, 2)
-        axial = np.stack(
-            (
-                turn[:, 2, 1] - turn[:, 1, 2],
-                turn[:, 0, 2] - turn[:, 2, 0],
-                turn[:, 1, 0] - turn[:, 0, 1],
-            ),
-            axis=1,
-        )
-        sine = np.linalg.norm(axial, axis=1)
-        angle = np.arctan2(sine, np.trace(turn, axis1=1, axis2=2) - 1.0)
-        share = np.where(sine > 1e-12, angle / np.where(sine > 1e-12, sine, 1.0), 0.5)
-        missing = np.empty((len(pose), 6))
-        missing[:, :3] = (wanted[:, :3, 3] - pose[:, :3, 3]) / self._size
-        missing[:, 3:] = axial * share[:, None]
-        is_over = (sine <= 1e-12) & (np.trace(turn, axis1=1, axis2=2) < 1.0)
-        missing[is_over, 3] = math.pi  # a half turn shows no axis here; any axis leads away from it
-        return missing
+        ways = (wanted[:, :3, 3] - pose[:, :3, 3]) / self._size
+        return np.concatenate((ways, Rotation.from_matrix(turn).as_rotvec()), axis=1)
 
     def _poses(self, theta: Array) -> tuple[Array, Array]:
         """Return poses ``(..., 4, 4)`` of the flange, and their Jacobian for the free joints.
@@ -268,9 +251,7 @@ class NumericKinematics:
     def _wrapped(self, axes: Array) -> Array:
         """Return axes with angles in (-180, 180] degrees."""
         turning = np.append(~self._linear, [False] * (ROBOT_AXES - self._count))
-        whole = 360.0 * np.ceil((axes - 180.0 - _TURN) / 360.0)
-        wrapped: Array = np.where(turning, axes - whole, axes)
-        return wrapped
+        return np.where(turning, wrapped(axes), axes)
 
     # ------------------------------------------------------------------------------- the geometry
 
@@ -299,6 +280,12 @@ class NumericKinematics:
         return math.degrees(math.atan2(-(back @ np.cross(axis, ahead)), -(back @ ahead)))
 
 
+def _found(path: Array) -> Array:
+    if np.isnan(path).any():
+        raise Fault("unreachable", "the path cannot be followed", number=1366)
+    return path
+
+
 def _skew(axis: Array) -> Array:
     x, y, z = axis
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
@@ -308,13 +295,3 @@ def _bound(value: float, sign: float, is_linear: bool) -> float:
     """Return a limit of the range of starts: at most half a turn, or 1 m, from zero."""
     most = 1000.0 if is_linear else 180.0
     return value if abs(value) < most or (is_linear and math.isfinite(value)) else sign * most
-
-
-def _distinct(solutions: Array) -> Array:
-    """Return the solutions ``(n, 6)`` without NaN and duplicates, in their order."""
-    kept: list[Array] = []
-    for solution in solutions[~np.isnan(solutions).any(axis=1)]:
-        differences = (np.abs((solution - other + 180.0) % 360.0 - 180.0).max() for other in kept)
-        if all(difference > _SAME for difference in differences):
-            kept.append(solution)
-    return np.array(kept).reshape(-1, ROBOT_AXES)

@@ -8,7 +8,6 @@ axes themselves are always exact.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
@@ -35,7 +34,7 @@ _COARSE = 8
 _NOISE = 1e-11
 """Degrees of fourth differences below which only every `_COARSE`-th point is kept: for closer
 points, rounding would dominate the differences."""
-_MOST = 8193
+_COUNTS = tuple((_FEWEST - 1) * 2**doubled + 1 for doubled in range(8))
 _SMOOTH = 0.004
 """Largest fourth difference of points in degrees; a cubic spline errs by 5/384 of it at most."""
 _ROUGH = 0.05  # degrees of fourth difference at which, with most points, an axis jumps
@@ -248,14 +247,7 @@ class BlendedAxes:
     @property
     def grid(self) -> Array:
         """See `Curve.grid`."""
-        shares = (self.transition.before, self.transition.after)
-        curves = (self.first, self.second)
-        needed = [
-            math.ceil(2.0 * share * len(curve.grid)) + 1
-            for curve, share in zip(curves, shares, strict=True)
-        ]
-        even = np.linspace(0.0, 1.0, max(_FEWEST, *needed))
-        return np.unique(np.concatenate((even, self.transition.breaks)))
+        return np.linspace(0.0, 1.0, max(len(self.first.grid), len(self.second.grid), _FEWEST))
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""
@@ -343,19 +335,13 @@ class PosePathCurve:
 
     def _points(self, start: Array) -> tuple[Array, Array]:
         """Return parameters and axes of enough points for a spline to represent the curve."""
-        count = _FEWEST
-        while True:
+        for count in _COUNTS:
             grid = np.linspace(0.0, 1.0, count)
             axes = self._axes_along(grid, start)
             rough = np.abs(np.diff(axes, n=4, axis=0)).max()
             if rough < _SMOOTH:
                 break
-            if count >= _MOST:
-                if rough > _ROUGH:
-                    raise _singular()
-                break
-            count = 2 * count - 1
-        if np.abs(axes[0] - start).max() > _ROUGH:
+        if max(rough, np.abs(axes[0] - start).max()) > _ROUGH:
             raise _singular()
         check_path(self.arm.machine.axes, axes)
         if np.abs(np.diff(axes[::_COARSE], n=4, axis=0)).max() < _NOISE:

@@ -11,8 +11,8 @@ from interp.robot.kinematics.kinematics import Array
 from interp.values.faults import Fault
 
 _SAME = 1e-6  # mm below which two points are the same
-_STRAIGHT = 1e-6
-"""Sine of the angle at a point below which three points are collinear."""
+_STRAIGHT = 1e-12
+"""Square of the sine of the angle at a point below which three points are collinear."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,7 +69,7 @@ def circle_through(
     across = np.cross(to_auxiliary, to_end)
     square = float(across @ across)
     sides = float(to_auxiliary @ to_auxiliary) * float(to_end @ to_end)
-    if square < _STRAIGHT**2 * sides:
+    if square < _STRAIGHT * sides:
         raise _inadmissible("start, auxiliary point and end lie on a line")
     to_centre = (
         np.cross(across, to_auxiliary) * float(to_end @ to_end)

@@ -24,8 +24,6 @@ _ROUNDS = 60
 _EXACT = 1e-15
 _UNEVEN = 2.0
 """Largest ratio of the durations of both sides: beyond it, a blend may cost more than it saves."""
-_BEHIND = 1e-9
-"""Offset in u after a break; rounding never moves it to before the break."""
 
 
 class Transition(Protocol):
@@ -39,11 +37,6 @@ class Transition(Protocol):
     @property
     def after(self) -> float:
         """The share of the second path that the blend uses."""
-        ...
-
-    @property
-    def breaks(self) -> Array:
-        """The values of u at which a third derivative jumps, moved slightly to after the jump."""
         ...
 
     def at(self, u: Array) -> tuple[Array, Array]:
@@ -72,11 +65,6 @@ class Rounding:
     weights: tuple[float, float]
     slope: float
     cosine: float = 1.0
-
-    @property
-    def breaks(self) -> Array:
-        """See `Transition.breaks`."""
-        return np.zeros(0)
 
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.at`."""
@@ -142,16 +130,20 @@ class Rounding:
 class Cubics:
     """A parameter as a function of time: consecutive cubics, given by the state at their starts.
 
-    ``knots`` is ``(n, 5)``: start time, value, and first to third derivative. ``duration`` is the
-    time of all of them.
+    ``knots`` is ``(n, 5)``: time, value, and first to third derivative, from time 0 on; the last
+    one is the end.
     """
 
     knots: Array
-    duration: float
+
+    @property
+    def duration(self) -> float:
+        """The time of all of them."""
+        return float(self.knots[-1, 0])
 
     def at(self, times: Array) -> Array:
         """Return values and first to third derivatives, ``(4, n)``."""
-        place = np.maximum(np.searchsorted(self.knots[:, 0], times, side="right") - 1, 0)
+        place = np.searchsorted(self.knots[:, 0], times, side="right") - 1
         start, value, speed, bend, jerk = self.knots.T[:, place]
         dt = times - start
         found = np.empty((4, len(times)))
@@ -163,8 +155,7 @@ class Cubics:
 
     def since(self, value: float) -> Cubics:
         """Return the part from the time at which a value is reached; values must increase."""
-        time = self._time(value)
-        return self.between(time, self.duration)
+        return self.between(self._time(value), self.duration)
 
     def until(self, value: float) -> Cubics:
         """Return the part up to the time at which a value is reached; values must increase."""
@@ -172,23 +163,24 @@ class Cubics:
 
     def _time(self, value: float) -> float:
         place = max(int(np.searchsorted(self.knots[:, 1], value)) - 1, 0)
-        start, origin, speed, bend, jerk = self.knots[place].tolist()
-        ends = [*self.knots[1:, 0].tolist(), self.duration]
-        low, high = 0.0, ends[place] - start
+        start, origin, speed, bend, jerk = map(float, self.knots[place])
+        low, high = 0.0, float(self.knots[place + 1, 0]) - start
         for _ in range(_ROUNDS):
             dt = (low + high) / 2.0
             if origin + dt * (speed + dt * (bend / 2.0 + dt * jerk / 6.0)) < value:
                 low = dt
             else:
                 high = dt
-        return float(start + high)
+        return start + high
 
     def between(self, start: float, end: float) -> Cubics:
         """Return the part between two times."""
         times = self.knots[:, 0]
-        inside = self.knots[(times > start) & (times < end)] - [start, 0.0, 0.0, 0.0, 0.0]
-        first = np.append(0.0, self.at(np.array([start])))
-        return Cubics(np.vstack((first, inside)), end - start)
+        inside = self.knots[(times > start) & (times < end)]
+        first, last = np.vstack(((start, end), self.at(np.array([start, end])))).T
+        knots = np.vstack((first, inside, last))
+        knots[:, 0] -= start
+        return Cubics(knots)
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,15 +220,7 @@ class Overlap:
     @cached_property
     def after(self) -> float:
         """See `Transition.after`."""
-        value, *_ = self.starting.at(np.array([self.starting.duration]))
-        return float(value.item())
-
-    @property
-    def breaks(self) -> Array:
-        """See `Transition.breaks`."""
-        starting = self.duration - self.starting.duration + self.starting.knots[:, 0]
-        times = (self.ending.knots[:, 0], [self.ending.duration], starting)
-        return np.minimum(np.concatenate(times) / self.duration + _BEHIND, 1.0)
+        return float(self.starting.knots[-1, 1])
 
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.at`."""

@@ -50,7 +50,6 @@ _STRAIGHT = 1e-3
 """Relative difference below which directions count as equal."""
 _BACK = -0.99
 """The smallest cosine of a corner whose speed is kept; a reversal has no finite curve."""
-_EVEN = 1e-6
 _GRID = np.linspace(0.0, 1.0, 65)
 
 
@@ -297,16 +296,12 @@ def _parameter(curve_limits: CurveLimits) -> Cubics | None:
         for begin, place, *rates in profile.knots:
             knots.append((time + begin, start + place / size, *(rate / size for rate in rates)))
         time += profile.duration
-    return Cubics(np.array(knots), time)
+    return Cubics(np.array(knots))
 
 
 def _junctions(transition: Transition) -> tuple[Junction, Junction]:
     """Return the junctions at both ends of a blend."""
     ((speed,), (bend,), _), _ = transition.rates(np.zeros(1))
     _, ((gear_out,), (bend_out,), _) = transition.rates(np.ones(1))
-    gear_in, bend_in = 1.0 / speed, -bend / speed**3
-    if abs(bend) < _EVEN * speed:
-        bend_in = 0.0
-    if abs(bend_out) < _EVEN * gear_out:
-        bend_out = 0.0
-    return Junction(float(gear_in), float(bend_in)), Junction(float(gear_out), float(bend_out))
+    into = Junction(float(1.0 / speed), float(-bend / speed**3))
+    return into, Junction(float(gear_out), float(bend_out))

@@ -96,12 +96,13 @@ class Stretch:
 
     def between(self, start: float, end: float) -> Stretch:
         """Return the part between two parameters."""
-        if start <= self.start and end >= self.end:
-            return self
         return replace(self, start=max(start, self.start), end=min(end, self.end))
 
     def part(self, start: float, share: float) -> Stretch:
-        """Return the stretch in the parameter of a part of the curve, given its start and share."""
+        """Return the stretch in the parameter of a part of the curve, given its start and share.
+
+        The curve is no blend.
+        """
         return Stretch(
             (self.start - start) / share,
             (self.end - start) / share,
@@ -109,7 +110,6 @@ class Stretch:
             self.programmed / share,
             self.normal / share,
             self.hard / share,
-            self.constant and self.constant / share,
         )
 
 

@@ -7,14 +7,15 @@ times are in seconds.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property, lru_cache
+from itertools import pairwise
 
 import numpy as np
 import ruckig
 
 from interp.robot.kinematics.kinematics import Array
-from interp.robot.planning.ramps import NO_RAMP, Bounds, Ramp, ramp
+from interp.robot.planning.ramps import NO_RAMP, Bounds, Ramp, bisected, ramp, speed_after
 
 _SLACK = 1e-7
 """Relative difference within which a change of speed fills a length."""
@@ -25,33 +26,25 @@ _INSTANT = 1e-12  # seconds
 
 #: Duration in s, initial acceleration, and jerk.
 Piece = tuple[float, float, float]
-Pieces = tuple[Piece, ...]
+#: Time, position, speed, acceleration, jerk.
+Knot = tuple[float, float, float, float, float]
 
 
 class SpeedProfile:
-    """A sequence of cubics, each with its start: time, position, speed, acceleration, jerk.
+    """A sequence of cubics, given by the state at the start of each, and at the end of the last.
 
     It begins at time 0 and position 0.
     """
 
-    def __init__(self, speed: float, pieces: Iterable[Piece]) -> None:
-        """Create it from the speed at its start, and its pieces."""
-        time = position = last = 0.0
-        knots: list[tuple[float, ...]] = []
-        for duration, acceleration, jerk in pieces:
-            knots.append((time, position, speed, acceleration, jerk))
-            position += duration * (speed + duration * (acceleration / 2.0 + duration * jerk / 6.0))
-            speed += duration * (acceleration + duration * jerk / 2.0)
-            time += duration
-            last = acceleration + duration * jerk
-        self.knots = knots or [(0.0, 0.0, speed, 0.0, 0.0)]
-        #: Seconds from start to end; the position, the speed and the acceleration there.
-        self.duration, self.length, self.final, self.last = time, position, speed, last
+    def __init__(self, knots: Sequence[Knot]) -> None:
+        self.knots = knots
+        #: Seconds from start to end; the position and the speed there.
+        self.duration, self.length, self.final, *_ = knots[-1]
 
     @property
     def lowest(self) -> float:
         """The lowest speed at the start of a piece or at the end."""
-        return min(self.final, *(knot[2] for knot in self.knots))
+        return min(knot[2] for knot in self.knots)
 
     @cached_property
     def _columns(self) -> Array:
@@ -70,11 +63,8 @@ class SpeedProfile:
     def state(self, time: float) -> tuple[float, float, float]:
         """Return position, speed and acceleration at a time; outside as in `at`."""
         clipped = min(max(time, 0.0), self.duration)
-        start, position, speed, acceleration, jerk = self.knots[0]
-        for knot in self.knots[1:]:
-            if knot[0] > clipped:
-                break
-            start, position, speed, acceleration, jerk = knot
+        later = (place for place, knot in enumerate(self.knots) if knot[0] > clipped)
+        start, position, speed, acceleration, jerk = self.knots[next(later, 0) - 1]
         dt = clipped - start
         return (
             position + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)),
@@ -88,14 +78,10 @@ class SpeedProfile:
             return 0.0
         if position >= self.length:
             return self.duration
-        low, high = self.knots[0], self.duration
-        for knot in self.knots[1:]:
-            if knot[1] >= position:
-                high = knot[0]
-                break
-            low = knot
-        origin, start, speed, acceleration, jerk = low
-        first, last = 0.0, high - origin
+        (origin, start, speed, acceleration, jerk), (end, *_) = next(
+            pair for pair in pairwise(self.knots) if pair[1][1] >= position
+        )
+        first, last = 0.0, end - origin
         dt = last / 2
         for _ in range(_ROUNDS):
             beyond = start + dt * (speed + dt * (acceleration / 2 + dt * jerk / 6)) - position
@@ -115,14 +101,11 @@ class SpeedProfile:
 
     def scaled(self, share: float, length: float | None = None) -> SpeedProfile:
         """Return the profile with positions in another unit."""
-        other = SpeedProfile(0.0, ())
-        other.knots = [
-            (t, p * share, v * share, a * share, j * share) for t, p, v, a, j in self.knots
-        ]
-        other.duration = self.duration
-        other.length = self.length * share if length is None else length
-        other.final, other.last = self.final * share, self.last * share
-        return other
+        knots = [(t, p * share, v * share, a * share, j * share) for t, p, v, a, j in self.knots]
+        if length is not None:
+            time, _, speed, acceleration, jerk = knots[-1]
+            knots[-1] = (time, length, speed, acceleration, jerk)
+        return SpeedProfile(knots)
 
     def split(self, ends: Sequence[float]) -> list[SpeedProfile]:
         """Return the parts up to each of these increasing positions; the last one is the end."""
@@ -137,12 +120,24 @@ class SpeedProfile:
     def _part(self, start: float, end: float) -> SpeedProfile:
         _, speed, _ = self.state(start)
         pieces = []
-        times = [*(knot[0] for knot in self.knots[1:]), self.duration]
-        for (begin, _, _, acceleration, jerk), finish in zip(self.knots, times, strict=True):
+        for (begin, _, _, acceleration, jerk), (finish, *_) in pairwise(self.knots):
             first, last = max(begin, start), min(finish, end)
-            if last > first:
-                pieces.append((last - first, acceleration + (first - begin) * jerk, jerk))
-        return SpeedProfile(speed, pieces)
+            pieces.append((last - first, acceleration + (first - begin) * jerk, jerk))
+        return profile_of(speed, pieces)
+
+
+def profile_of(speed: float, pieces: Iterable[Piece]) -> SpeedProfile:
+    """Return the profile of the pieces that last, from a speed on."""
+    time = position = final = slew = 0.0
+    knots: list[Knot] = []
+    for duration, acceleration, jerk in pieces:
+        if duration > 0.0:
+            knots.append((time, position, speed, acceleration, jerk))
+            position += duration * (speed + duration * (acceleration / 2.0 + duration * jerk / 6.0))
+            speed += duration * (acceleration + duration * jerk / 2.0)
+            time += duration
+            final, slew = acceleration + duration * jerk, jerk
+    return SpeedProfile([*knots, (time, position, speed, final, slew)])
 
 
 @lru_cache(maxsize=256)  # plans that differ in a blend have most of their spans in common
@@ -161,7 +156,7 @@ def travel(
     """
     direct = ramp(speed, acceleration, target, bounds, final)
     if direct.distance >= length * (1.0 - _SLACK):
-        return SpeedProfile(speed, _lasting(direct.pieces)).stretched(length)
+        return profile_of(speed, direct.pieces).stretched(length)
     found = _solved(length, speed, acceleration, target, bounds, final)
     misses = found is None or abs(found.length - length) > _EXACT * length
     if found is None or misses or found.lowest < -_SLACK * bounds.velocity:
@@ -171,15 +166,15 @@ def travel(
 
 def stop(speed: float, acceleration: float, bounds: Bounds) -> SpeedProfile:
     """Return the fastest profile to standstill, over any length."""
-    return SpeedProfile(speed, _lasting(ramp(speed, acceleration, 0.0, bounds).pieces))
+    return profile_of(speed, ramp(speed, acceleration, 0.0, bounds).pieces)
 
 
 def steady(speed: float, length: float) -> SpeedProfile:
     """Return the profile over a length at one speed; without a speed it takes no time."""
-    return SpeedProfile(speed, _at(speed, length))
+    return profile_of(speed, _at(speed, length))
 
 
-def _at(speed: float, length: float) -> Pieces:
+def _at(speed: float, length: float) -> tuple[Piece, ...]:
     return ((length / speed, 0.0, 0.0),) if speed > 0.0 else ()
 
 
@@ -213,7 +208,7 @@ def _solved(
         *zip(solved.brake.t, solved.brake.a, solved.brake.j, strict=True),
         *zip(solved.t, solved.a[:-1], solved.j, strict=True),
     ]
-    return SpeedProfile(speed, _lasting((t, a * unit, jerk * unit) for t, a, jerk in pieces))
+    return profile_of(speed, ((t, a * unit, jerk * unit) for t, a, jerk in pieces))
 
 
 def _searched(
@@ -227,21 +222,13 @@ def _searched(
     def fits(cruise: float) -> bool:
         return sum(part.distance for part in parts(cruise)) <= length
 
-    eased = speed + acceleration * abs(acceleration) / (2.0 * bounds.jerk)
-    rejoined = target + final * abs(final) / (2.0 * -bounds.jerk)
-    low = max(eased, rejoined)
-    high = max(bounds.velocity, low)
+    eased = speed_after(speed, acceleration, 0.0, bounds.jerk)
+    low = max(eased, speed_after(target, final, 0.0, -bounds.jerk))
     if fits(low):
-        for _ in range(_ROUNDS):
-            middle = (low + high) / 2
-            low, high = (middle, high) if fits(middle) else (low, middle)
+        low = bisected(fits, low, max(bounds.velocity, low))
         ramps = parts(low)
     else:  # it brakes already, and all that is left over is travelled behind that
         low, ramps = target, (ramp(speed, acceleration, target, bounds, final), NO_RAMP)
     up, down = ramps
     cruise = _at(low, length - up.distance - down.distance)
-    return SpeedProfile(speed, _lasting((*up.pieces, *cruise, *down.pieces)))
-
-
-def _lasting(pieces: Iterable[Piece]) -> Iterator[Piece]:
-    return (piece for piece in pieces if piece[0] > 0.0)
+    return profile_of(speed, (*up.pieces, *cruise, *down.pieces))

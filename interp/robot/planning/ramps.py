@@ -9,6 +9,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+_HALVINGS = 48
+
 
 @dataclass(frozen=True, slots=True)
 class Bounds:
@@ -93,20 +95,12 @@ def speed_after(speed: float, acceleration: float, final: float, jerk: float) ->
     return speed + (final + acceleration) * abs(final - acceleration) / (2.0 * jerk)
 
 
-def largest_speed(speed: float, length: float, bounds: Bounds) -> float:
-    """Return the largest speed at one end of a length, given the speed at the other end.
-
-    The acceleration is zero at both ends. A change of speed Δ takes ``2·√(Δ/j)`` seconds up to
-    a²/j, and ``Δ/a + a/j`` above that, at the mean of both speeds.
-    """
-    a, j = bounds.acceleration, bounds.jerk
-    threshold = a * a / j
-    if (2.0 * speed + threshold) * a / j >= length:
-        # x³ + 2·speed·x = length·√j with x = √Δ, which has one root.
-        third, half = 2.0 * speed / 3.0, length * math.sqrt(j) / 2.0
-        root = math.cbrt(half + math.sqrt(half * half + third**3))
-        x = root - third / root if root > 0.0 else 0.0
-        return speed + x * x
-    b = speed / a + a / (2.0 * j)
-    c = speed * a / j - length
-    return speed + a * (math.sqrt(b * b - 2.0 * c / a) - b)
+def bisected(fits: Callable[[float], bool], within: float, beyond: float) -> float:
+    """Return the speed that still fits and is nearest to one that does not."""
+    for _ in range(_HALVINGS):
+        middle = (beyond + within) / 2.0
+        if fits(middle):
+            within = middle
+        else:
+            beyond = middle
+    return within

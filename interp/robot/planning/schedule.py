@@ -73,12 +73,13 @@ def braking(
         return []
     for is_loose in (True, False):
         spans = spans_of(stretches, state, 1.0, is_hard=is_hard, is_loose=is_loose)
-        for _ in range(2):
+        constant = [span for span in spans if span.is_constant]
+        for slowed in ((), constant):
+            for span in slowed:
+                span.is_constant = False
             profiles = _braked(spans, _start(spans, state), is_strict)
             if profiles is not None:
                 return _own_units(stretches, spans, profiles)
-            for span in spans:
-                span.is_constant = False
     return None
 
 
@@ -184,12 +185,10 @@ def _ease(spans: Sequence[Span], found: _Speeds | None) -> bool:
     If speeds exceed what is allowed, this applies to all blends, since braking may end within a
     blend.
     """
-    ends = [0.0] * len(spans) if found is None or found.over > 0.0 else found.ends
-    slowed = [
-        span
-        for span, speed in zip(spans, ends, strict=True)
-        if span.is_constant and speed < _HELD * span.constant.velocity
-    ]
+    constant = [place for place, span in enumerate(spans) if span.is_constant]
+    if found is not None and not found.over:
+        constant = [n for n in constant if found.ends[n] < _HELD * spans[n].constant.velocity]
+    slowed = [spans[place] for place in constant]
     for span in slowed:
         span.is_constant = False
     return bool(slowed)

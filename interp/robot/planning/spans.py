@@ -9,12 +9,12 @@ with the start of the next is entered while braking and left while accelerating.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from interp.robot.planning.junctions import JoinedStretch, PathState
+from interp.robot.planning.junctions import STOP, JoinedStretch, PathState
 from interp.robot.planning.profile import SpeedProfile, steady, stop, travel
-from interp.robot.planning.ramps import Bounds, largest_speed, ramp, speed_after
+from interp.robot.planning.ramps import Bounds, bisected, ramp, speed_after
 
 _SPARE = 1.0 - 1e-6
 """Share of a length that changes of speed may use, so that rounding makes none impossible."""
@@ -26,24 +26,25 @@ _ABOUT = 0.8
 """Ratio of accelerations or jerks above which the lower one is better than another span."""
 _JUMP = 0.01
 """Share of the maximum acceleration by which it may jump where two blends meet."""
-_HALVINGS = 48
 
 
 @dataclass(slots=True)
 class Span:
     """Stretches that are travelled as one, in the unit of the first span after a stop.
 
-    ``scales`` convert the parameters of its stretches to that unit, ``ends`` are the positions of
-    their ends. The acceleration is ``entry_bend`` times the square of the speed at the start, and
-    ``exit_bend`` times at the end; both are 0 except beside a blend. At the start of the first span
-    it is ``acceleration``. Where two blends meet, it jumps by ``jump`` times the square of the
-    speed. ``stands`` if the arm stops before the span.
+    ``bounds`` are the lowest of its stretches, ``highest`` the highest. ``scales`` convert the
+    parameters of its stretches to that unit, ``ends`` are the positions of their ends. The
+    acceleration is ``entry_bend`` times the square of the speed at the start, and ``exit_bend``
+    times at the end; both are 0 except beside a blend. At the start of the first span it is
+    ``acceleration``. Where two blends meet, it jumps by ``jump`` times the square of the speed.
+    ``stands`` if the arm stops before the span.
 
     A blend that ``is_constant`` is passed at constant speed up to ``constant.velocity``. If its
     speed changes, it has the other ``bounds``, unless it is entered faster than ``eased``.
     """
 
     bounds: Bounds
+    highest: Bounds
     constant: Bounds
     eased: float
     is_blend: bool
@@ -96,14 +97,12 @@ class Span:
         """Return the largest speed, at most ``most``, to enter it and leave it at ``wanted``."""
         if self.is_constant:
             return min(wanted, most)
-        if not self.entry_bend and not self.exit_bend:
-            return min(largest_speed(wanted, self.length * _SPARE, self.bounds), most)
 
         def fits(speed: float) -> bool:
             change = self._distance(speed, self.entry_bend * speed**2, min(wanted, speed))
             return at_most(change, self.length * _SPARE)
 
-        return most if fits(most) else _bisected(fits, 0.0, most)
+        return most if fits(most) else bisected(fits, 0.0, most)
 
     def exit_speed(
         self, speed: float, wanted: float, *, has_no_alternative: bool = False
@@ -122,8 +121,6 @@ class Span:
 
         if fits(wanted):
             return wanted
-        if acceleration == 0.0 and wanted > speed and not self.exit_bend:
-            return max(largest_speed(speed, self.length * _SPARE, self.bounds), speed)
         # Not every speed between two that can be reached can be reached: braking hard, it may take
         # longer to ease off the brake at some speed than to stand still.
         jerk = self.bounds.jerk
@@ -134,9 +131,9 @@ class Span:
                 final = self.exit_bend * target**2
                 return target <= speed_after(speed, acceleration, final, jerk)
 
-            candidates.append(_bisected(is_slower, 0.0, max(speed, wanted)))
+            candidates.append(bisected(is_slower, 0.0, max(speed, wanted)))
         within = next((one for one in candidates if one >= 0.0 and fits(one)), None)
-        return None if within is None else _bisected(fits, within, wanted)
+        return None if within is None else bisected(fits, within, wanted)
 
     def profiles(self, speed: float, final: float) -> list[SpeedProfile]:
         """Return the profile of each stretch between the speeds at both ends of the span."""
@@ -177,38 +174,31 @@ def spans_of(
     """
     ratio = _LOOSE if is_loose else _ALIKE
     spans: list[Span] = []
-    scale, highest = 0.0, Bounds(0.0, 0.0, 0.0)
-    for place, joined in enumerate(stretches):
+    for joined in stretches:
         stretch, junction = joined.stretch, joined.junction
-        is_first, is_blend = place == 0, stretch.constant is not None
-        stands = not is_first and junction.gear <= 0.0
-        if is_first or stands:
-            scale, bend = stretch.size, 0.0
-        else:
-            before, scale = scale, scale / junction.gear
-            bend = scale * junction.bend / before**2
+        last = spans[-1] if spans else None
+        is_blend, stands = stretch.constant is not None, last is not None and junction == STOP
+        scale = stretch.size if last is None or stands else last.scales[-1] / junction.gear
         own = stretch.bounds(override, is_hard)
-        if is_blend and is_first and state.speed * _ALIKE > stretch.normal.velocity:
+        if is_blend and last is None and state.speed * _ALIKE > stretch.normal.velocity:
             own = stretch.constant_bounds(override)
         bounds = own * scale
-        last = spans[-1] if spans else None
         if (
             last is not None
             and not (stands or is_blend or last.is_blend)
-            and _is_about(highest, bounds, ratio)
+            and _is_about(last.highest, bounds, ratio)
             and _is_about(bounds, last.bounds, ratio)
         ):
-            highest = highest.merged(bounds, max)
+            last.highest = last.highest.merged(bounds, max)
             last.bounds = last.bounds.merged(bounds, min)
         else:
-            highest = bounds
             constant = stretch.constant_bounds(override) * scale
             eased = stretch.normal.velocity * scale
-            is_constant = is_blend and not is_first
-            spans.append(Span(bounds, constant, eased, is_blend, is_constant, stands))
-            if last is not None:
-                spans[-1].follow(last, bend)
-        start = state.u if is_first else stretch.start
+            is_constant = is_blend and last is not None
+            spans.append(Span(bounds, bounds, constant, eased, is_blend, is_constant, stands))
+            if last is not None and not stands:
+                spans[-1].follow(last, scale * junction.bend / last.scales[-1] ** 2)
+        start = state.u if last is None else stretch.start
         spans[-1].add(scale, (stretch.end - start) * scale)
     spans[0].acceleration = state.acceleration * spans[0].scales[0]
     return spans
@@ -243,15 +233,4 @@ def _largest_with(bend: float, bounds: Bounds) -> float:
             and (speed + gain**2 / (2.0 * bounds.jerk)) * _SPARE <= bounds.velocity
         )
 
-    return bounds.velocity if fits(bounds.velocity) else _bisected(fits, 0.0, bounds.velocity)
-
-
-def _bisected(fits: Callable[[float], bool], within: float, beyond: float) -> float:
-    """Return the speed that still fits and is nearest to one that does not."""
-    for _ in range(_HALVINGS):
-        middle = (beyond + within) / 2.0
-        if fits(middle):
-            within = middle
-        else:
-            beyond = middle
-    return within
+    return bounds.velocity if fits(bounds.velocity) else bisected(fits, 0.0, bounds.velocity)

@@ -55,6 +55,11 @@ class _Mark:
     range: SplineRange
     number: int
 
+    @property
+    def value(self) -> float:
+        """What is written with it, or 0."""
+        return self.range.value or 0.0
+
 
 def _marks(motion: Motion) -> Iterator[_Mark]:
     for number, part in enumerate(motion.parts):
@@ -73,7 +78,7 @@ def _constant(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
     for mark in marks:
         wanted_range = mark.range
         segment = min(mark.number + (0 if wanted_range.on_start else 1), len(pieces))
-        place = float(np.clip(ends[segment] + (wanted_range.value or 0.0), 0.0, ends[-1]))
+        place = float(np.clip(ends[segment] + mark.value, 0.0, ends[-1]))
         if wanted_range.edge == "START":
             start = place
         elif start is not None:
@@ -148,13 +153,12 @@ def _timed(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
             groups, shares, begins = [], [], mark.number
         elif begins is not None and wanted_range.edge == "PART":
             groups.append(range(begins, mark.number))
-            shares.append(wanted_range.value or 0.0)
+            shares.append(mark.value)
             begins = mark.number
         elif begins is not None:
             if not groups:
-                groups, shares = [range(begins, mark.number)], [1.0]
-            total = sum(shares) or 1.0
-            wanted = [(wanted_range.value or 0.0) * share / total for share in shares]
+                groups, shares = [range(begins, mark.number)], [mark.value]
+            wanted = [mark.value * share / (sum(shares) or 1.0) for share in shares]
             pieces = _slowed(pieces, groups, wanted)
             begins = None
     return pieces

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from interp.robot.planning.profile import SpeedProfile, stop, travel
+from interp.robot.planning.profile import SpeedProfile, profile_of, stop, travel
 from interp.robot.planning.ramps import Bounds, ramp
 
 BOUNDS = Bounds(1000.0, 2000.0, 20000.0)
@@ -72,7 +72,7 @@ def test_back_from_position_to_time(share: float) -> None:
 
 def test_a_time_that_is_found_at_once_is_kept() -> None:
     """The time of a position is exact to rounding, also where the first guess was."""
-    profile = SpeedProfile(500.0, ((1.25, 0.0, 0.0),))
+    profile = profile_of(500.0, ((1.25, 0.0, 0.0),))
     assert 500.0 == pytest.approx(profile.state(profile.time_at(500.0))[0], abs=1e-12)
 
 

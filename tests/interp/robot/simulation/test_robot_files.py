@@ -160,7 +160,8 @@ def test_an_arm_of_four_axes_with_a_gripper(tmp_path: Path) -> None:
     pose = arm.forward([30.0, 60.0, -150.0, 20.0, 0.0, 0.0])
     assert 50.0 == pytest.approx(pose[2, 3])
     ways = arm.inverse(pose)
-    assert 2 == (~np.isnan(ways[:, 0])).sum()
+    found_ways = ways[~np.isnan(ways[:, 0])].round(3)
+    assert 2 == len(np.unique(found_ways, axis=0))
     assert 4 == Cell(found.machine, robot=found).model().nv
 
 
