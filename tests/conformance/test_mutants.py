@@ -402,7 +402,7 @@ def test_no_change_of_a_line_can_be_noticed() -> None:
 )
 def test_a_search_may_go_another_way(reached: int, runs: int, changed: str, fate: Fate) -> None:
     """A change of one is equivalent where all cases that run it did, and saw nothing else."""
-    mutant = _mutant("interp.robot.planning.spans", "_bisected", "2.0", "3.0")
+    mutant = _mutant("interp.robot.planning.ramps", "bisected", "2.0", "3.0")
     one = Trial(mutant, "survived", reached=reached, runs=runs, changed=changed)
     assert fate == trial._if_equivalent(one).fate
 

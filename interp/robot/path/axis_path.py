@@ -247,7 +247,8 @@ class BlendedAxes:
     @property
     def grid(self) -> Array:
         """See `Curve.grid`."""
-        return np.linspace(0.0, 1.0, max(len(self.first.grid), len(self.second.grid), _FEWEST))
+        count = max(len(self.first.grid), len(self.second.grid), _FEWEST)
+        return np.unique(np.concatenate((np.linspace(0.0, 1.0, count), self.transition.breaks)))
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""

@@ -24,6 +24,8 @@ _ROUNDS = 60
 _EXACT = 1e-15
 _UNEVEN = 2.0
 """Largest ratio of the durations of both sides: beyond it, a blend may cost more than it saves."""
+_BEHIND = 1e-9
+"""Offset in u after a break; rounding never moves it to before the break."""
 
 
 class Transition(Protocol):
@@ -37,6 +39,11 @@ class Transition(Protocol):
     @property
     def after(self) -> float:
         """The share of the second path that the blend uses."""
+        ...
+
+    @property
+    def breaks(self) -> Array:
+        """The values of u at which a third derivative jumps, moved slightly to after the jump."""
         ...
 
     def at(self, u: Array) -> tuple[Array, Array]:
@@ -65,6 +72,11 @@ class Rounding:
     weights: tuple[float, float]
     slope: float
     cosine: float = 1.0
+
+    @property
+    def breaks(self) -> Array:
+        """See `Transition.breaks`."""
+        return np.empty(0)
 
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.at`."""
@@ -221,6 +233,13 @@ class Overlap:
     def after(self) -> float:
         """See `Transition.after`."""
         return float(self.starting.knots[-1, 1])
+
+    @property
+    def breaks(self) -> Array:
+        """See `Transition.breaks`."""
+        starting = self.duration - self.starting.duration + self.starting.knots[:, 0]
+        times = np.concatenate((self.ending.knots[:, 0], starting))
+        return np.minimum(times / self.duration + _BEHIND, 1.0)
 
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.at`."""

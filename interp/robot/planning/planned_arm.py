@@ -31,6 +31,7 @@ from interp.robot.planning.tracks import Track, Tracks
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
+_ROUNDING = 1e-9  # of u
 _BACK = 1e-3  # degrees or mm by which the arm may have come back beside the place it left
 
 
@@ -123,7 +124,7 @@ class PlannedArm:
         reached = self._execution.reached(body, self._seconds)
         if self._override == 0.0:  # it may brake still
             reached = max(reached, self._execution.stood_at(body))
-        if leaves < body.start or reached > leaves:
+        if reached > leaves + _ROUNDING:
             return None
         try:
             blend = blend_of(self._tracks, plan.last, track, zone, plan.straight)

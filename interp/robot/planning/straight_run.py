@@ -93,8 +93,11 @@ def extended(
         return None
     if one.curve.placement != other.curve.placement:
         return None
-    limits_of = [[replace(path, length=1.0) for path in piece.paths] for piece in (one, other)]
-    if limits_of[0] != limits_of[1] or not first.axis_limits.equals(second.axis_limits):
+    ours, theirs = (
+        [(path.velocity, path.acceleration, path.jerk) for path in piece.paths]
+        for piece in (one, other)
+    )
+    if ours != theirs or not first.axis_limits.equals(second.axis_limits):
         return None
     parts: tuple[StraightPart, ...] = StraightPart.of(one.curve), StraightPart.of(other.curve)
     before, behind = (part.way for part in parts)
@@ -141,8 +144,7 @@ def straight_through(
         return None
     if not isinstance(one, JointLine) and one.placement != other.placement:
         return None
-    leaves = one.axes(np.array([start]))[0] if start > 0.0 else one.start
-    joins = other.axes(np.array([end]))[0] if end < 1.0 else other.end
+    (leaves,), (joins,) = one.axes(np.array([start])), other.axes(np.array([end]))
     shares = np.cumsum(ways)[:-1] / ways.sum()
     corners = np.array([part.curve.end for part in parts[:-1]])
     if isinstance(one, JointLine):
