@@ -17,6 +17,7 @@ from conformance.evaluation.motions import (
     NEAR_DEGREES,
     NEAR_MM,
     ROUNDING,
+    Array,
     EndedMotion,
     flanges_of,
     follows,
@@ -25,6 +26,7 @@ from conformance.evaluation.observation import Observation
 from conformance.evaluation.path_geometry import (
     RATE_MARGIN,
     change_rates,
+    circle_of,
     from_circle,
     nearest,
     refined,
@@ -50,7 +52,7 @@ def motion_violations(seen: Observation, motions: Sequence[EndedMotion]) -> Iter
     if path is not None and machine is not None:
         yield from _wrong_tool_pose(path, machine)
     for one in motions:
-        laws = (_wrong_end, _wrong_posture, _wrong_circle, _missed_points)
+        laws = (_wrong_end, _wrong_posture, _wrong_circle, _wrong_turn, _missed_points)
         for law in laws if one.is_held else (*laws, _not_at_rest, _too_fast):
             yield from law(one)
 
@@ -187,6 +189,50 @@ def _wrong_circle(one: EndedMotion) -> Iterator[Violation]:
     if off > NEAR_MM:
         law = "a CIRC is the circle through its start, auxiliary and end point"
         yield one.broken(law, f"{off:.4f} mm off", "MOT-20")
+
+
+def _wrong_turn(one: EndedMotion) -> Iterator[Violation]:
+    """Yield a circular angle at whose end the tool is turned otherwise than docs/motion.md says.
+
+    The programmed orientation is that of the programmed end point: swivel and rotation grow evenly
+    up to there, and on behind it.
+    """
+    motion, settings = one.motion, one.motion.settings
+    points = [motion.auxiliary or {}, motion.target]
+    if motion.angle is None or motion.is_relative or not (one.begins and one.stops):
+        return
+    if (settings.orientation, settings.circle) != ("#VAR", "#BASE") or not _has_six(one.machine):
+        return
+    if settings.placement.mode is not IpoMode.BASE or not {*_POINT, *_ANGLES} <= set(motion.target):
+        return
+    if not set(_POINT) <= set(points[0]):
+        return
+    first, last = one.poses(one.ends)
+    middle, end = (np.array([point[name] for name in _POINT]) for point in points)
+    centre, axis = circle_of(first[:3, 3], middle, end)
+    ahead, onward = first[:3, 3] - centre, end - centre
+    angle = math.atan2(float(np.cross(ahead, onward) @ axis), float(ahead @ onward)) % math.tau
+    share = math.radians(motion.angle) / (angle - math.tau * (motion.angle < 0.0))
+    wanted = matrix_of(Pose.of(0.0, 0.0, 0.0, *(motion.target[name] for name in _ANGLES)))
+    off = np.abs(_turned(first[:3, :3], wanted[:3, :3], share) - last[:3, :3]).max()
+    if math.degrees(float(off)) > NEAR_DEGREES:
+        law = "the orientation of a circular angle is that of its place on the circle"
+        yield one.broken(law, f"turned {math.degrees(float(off)):.4f} beside it")
+
+
+def _turned(start: Array, end: Array, share: float) -> Array:
+    """Return the orientation at a share of a swivel of the X axis and a rotation about it."""
+    from scipy.spatial.transform import Rotation
+
+    change = start.T @ end
+    across = np.cross([1.0, 0.0, 0.0], change[:, 0])
+    sine = max(float(np.linalg.norm(across)), 1e-12)
+    swivel = across / sine * math.atan2(sine, change[0, 0])
+    rest = Rotation.from_rotvec(-swivel).as_matrix() @ change
+    twist = np.array([math.atan2(rest[2, 1], rest[1, 1]), 0.0, 0.0])
+    first, second = Rotation.from_rotvec(share * np.stack((swivel, twist))).as_matrix()
+    turned: Array = start @ first @ second
+    return turned
 
 
 def _missed_points(one: EndedMotion) -> Iterator[Violation]:
