@@ -16,6 +16,7 @@ from typing import Any
 
 from grammar.notation.edits import Edit, from_data, to_data
 from grammar.notation.model import GrammarError
+from grammar.semantics.rules import tiers
 from recovery.ledger.construct import (
     GROUNDS,
     REJECTED,
@@ -28,7 +29,6 @@ from recovery.ledger.construct import (
 from support.files.untrusted import DocumentError, read_bytes, toml_of
 
 _FILE_NAME = re.compile(r"(?:(?P<number>\d{4})-)?(?P<name>[a-z0-9]+(?:-[a-z0-9]+)*)\.toml")
-_RULE_ID = re.compile(r"[A-Z]{3}-\d\d")
 _VERDICT = re.compile(r"(?:accepted|refused: \S.*)?")
 _HEAD = re.compile(r"(?:[ \t]*(?:#.*)?\r?\n)*")
 _ESCAPE = re.compile(r"\\.")
@@ -37,11 +37,6 @@ _WIDEST_NAME = 40
 _MOST_SEEN = 10
 _COUNTS = ("files", "origins", "lines")
 _FIGURES = tuple(f.name for f in fields(Effect) if f.name != "metrics")
-
-
-def is_rule_id(text: str) -> bool:
-    """Return whether a text has the form of a rule ID, such as ``TRG-04``."""
-    return _RULE_ID.fullmatch(text) is not None
 
 
 def name_from(text: str) -> str:
@@ -182,8 +177,8 @@ def _evidence(table: _Table) -> Evidence:
         raise table.wrong("origins", "more origins than files or lines")
     rules, manual = table.texts("rules"), table.text("manual", "")
     for rule in rules:
-        if not is_rule_id(rule):
-            raise table.wrong("rules", f"{rule!r} is not the ID of a rule, such as TRG-04")
+        if rule not in tiers():
+            raise table.wrong("rules", f"{rule!r} is not the ID of a rule in docs/semantics.md")
     verdict = table.text("verdict", "")
     if _VERDICT.fullmatch(verdict) is None:
         raise table.wrong("verdict", "is neither empty, 'accepted', nor 'refused: MESSAGE'")

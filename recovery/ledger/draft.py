@@ -9,7 +9,7 @@ from typing import Any
 
 from grammar.notation.edits import from_data
 from recovery.ledger.construct import Construct, Evidence, LedgerError
-from recovery.ledger.construct_file import name_from, parse, text_of
+from recovery.ledger.construct_file import name_from, parse, read, text_of
 from recovery.ledger.evidence import place
 
 _PLACES_SEEN = 10
@@ -27,7 +27,7 @@ def propose(record: Mapping[str, Any], cluster: str, number: int, folder: Path) 
 
     ``cluster`` is an ID or its beginning. The comment at the head of the file has the survey's
     figures for the proposal. Returns the new file; an existing one is never replaced. Raises
-    `LedgerError`.
+    `LedgerError`, also if a file already proposes these edits.
     """
     chosen = _cluster(record, cluster)
     proposals = chosen["proposals"]
@@ -38,6 +38,9 @@ def propose(record: Mapping[str, Any], cluster: str, number: int, folder: Path) 
     construct = _construct(record, chosen, proposals[number - 1])
     text, name = text_of(construct), construct.name
     parse(text, folder / f"{name}.toml")  # raises an error if the file could not be read back
+    for file in folder.glob(f"[0-9][0-9][0-9][0-9]-{name}.toml"):
+        if read(file).edits == construct.edits:
+            raise LedgerError(f"{chosen['id']} is already proposed: {file.as_posix()}")
     folder.mkdir(parents=True, exist_ok=True)
     taken = [int(p.name[:4]) for p in folder.glob("[0-9][0-9][0-9][0-9]-*.toml")]
     at = max(taken, default=0) + 1

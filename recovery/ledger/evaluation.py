@@ -19,7 +19,7 @@ from recovery.ledger.evidence import (
     restored_lines,
     with_counts,
 )
-from recovery.ledger.ledger import broken_examples, is_wording
+from recovery.ledger.ledger import broken_examples, is_wording, missing_parts
 from recovery.ledger.metrics import metrics
 from recovery.negatives.negatives import Negative
 from recovery.survey.failing_line import FailingLine
@@ -86,8 +86,7 @@ def _refusals(
         return
     if construct.evidence.objection:
         yield construct.evidence.objection
-    if not construct.accept:
-        yield "examples.accept: there is no program that shows it"
+    yield from missing_parts(construct)
     for number, text in enumerate(construct.accept, 1):
         known = _reading(before.recognizer, text)
         if known is not None and known == _reading(after.recognizer, text):

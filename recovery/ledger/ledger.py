@@ -145,8 +145,7 @@ def findings(ledger: Ledger, preliminary: Grammar, grammar: Path) -> Iterator[st
         if not is_wording(before, after):
             if construct.evidence.objection:
                 yield f"{where}: evidence: {construct.evidence.objection}"
-            if not construct.accept:
-                yield f"{where}: examples.accept: there is no program that shows it"
+            yield from (f"{where}: {part}" for part in missing_parts(construct))
         if construct.effect is None:
             yield f"{where}: effect: is missing; krl construct accept measures it"
         yield from (f"{where}: {wrong}" for wrong in broken_examples(construct, recognizer))
@@ -155,6 +154,16 @@ def findings(ledger: Ledger, preliminary: Grammar, grammar: Path) -> Iterator[st
 def is_wording(before: Grammar, after: Grammar) -> bool:
     """Return whether two grammars differ only in comments and layout, which needs no evidence."""
     return before.rules == after.rules
+
+
+def missing_parts(construct: Construct) -> Iterator[str]:
+    """Yield what a construct that changes rules has to say and does not."""
+    if not construct.summary.strip():
+        yield "summary: does not say what it is"
+    if not construct.accept:
+        yield "examples.accept: there is no program that shows it"
+    if not construct.reject:
+        yield "examples.reject: there is no similar program that stays rejected"
 
 
 def broken_examples(construct: Construct, recognizer: Recognizer) -> Iterator[str]:

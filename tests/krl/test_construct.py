@@ -74,13 +74,21 @@ def test_a_survey_of_before_is_understood(out: Path, tmp_path: Path) -> None:
     assert "0001-for-step.toml" == file.name
 
 
-def test_a_file_is_never_replaced(out: Path, tmp_path: Path) -> None:
-    """Proposing again takes the next number."""
-    assert (0, 0) == (propose(out, tmp_path), propose(out, tmp_path))
-    assert sorted(f.name for f in tmp_path.iterdir()) == [
-        "0001-for-step.toml",
-        "0002-for-step.toml",
-    ]
+def test_the_same_edits_are_proposed_once(
+    out: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Proposing again names the file; another construct of that name takes the next number."""
+    assert propose(out, tmp_path) == 0
+    file = tmp_path / "0001-for-step.toml"
+    reviewed = file.read_text(encoding="utf-8").replace('summary = ""', 'summary = "A step."')
+    file.write_text(reviewed, encoding="utf-8")
+    assert propose(out, tmp_path) == 2
+    assert f"already proposed: {file.as_posix()}" in capsys.readouterr().err
+    file.write_text(reviewed.replace("(STEP ", "(STEP '-'? "), encoding="utf-8")
+    assert propose(out, tmp_path) == 0
+    assert "0001-for-step.toml 0002-for-step.toml" == " ".join(
+        sorted(f.name for f in tmp_path.iterdir())
+    )
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,7 @@ def construct(name: str, edits: tuple[Edit, ...], accept: str, reject: str) -> C
         name=name,
         title=name,
         edits=edits,
+        summary=name,
         evidence=Evidence(rules=("CTL-05",)),
         accept=(f"DEF A()\n{accept}\nEND\n",),
         reject=(f"DEF A()\n{reject}\nEND\n",),
@@ -172,7 +173,7 @@ def test_an_example_that_fails_in_the_end_refuses(house: House) -> None:
     """A construct may take away what one before it accepted."""
     name = construct("names", (AddAlternative("simpleStatement", "NAME sum"),), "AAA 1", "1")
     edits = (AddToken("AAA"), AddAlternative("simpleStatement", "AAA AAA"))
-    other = replace(WORDS["AAA"], edits=edits, accept=("DEF A()\nAAA AAA\nEND\n",), reject=())
+    other = replace(WORDS["AAA"], edits=edits, accept=("DEF A()\nAAA AAA\nEND\n",))
     found = house.prepare(house.file(name), house.file(other))
     assert (
         ("0001-names", "in the end examples.accept: number 1 is not accepted"),

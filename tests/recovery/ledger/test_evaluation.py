@@ -18,6 +18,7 @@ STEP = Construct(
     name="for-step",
     title="FOR … STEP",
     edits=(AddToken("STEP"), Insert("forStatement", (1, 7), "(STEP expression)?")),
+    summary="A step.",
     evidence=Evidence(rules=("CTL-05",)),
     accept=("DEF A()\nFOR I=1 TO 9 STEP 2\nENDFOR\nEND\n",),
     reject=("DEF A()\nFOR I=1 TO 9 STEP=2\nENDFOR\nEND\n",),
@@ -170,7 +171,7 @@ def test_a_generated_negative_that_is_accepted_names_its_fact() -> None:
     wide = edited(
         AddAlternative("simpleStatement", "expression"),
         accept=("DEF A()\nX==1\nEND\n",),
-        reject=(),
+        reject=("DEF A()\nX==\nEND\n",),
     )
     found = refusals(wide, generated=3_000)  # as many as a construct is tried by
     assert found
@@ -197,9 +198,15 @@ def test_examples_are_tried() -> None:
     assert "examples.accept: number 2 is not accepted" == first
     assert "examples.reject: number 1 is accepted" == second
     assert "examples.accept: number 1 is read the same way without the construct" == third
-    assert ("examples.accept: there is no program that shows it",) == refusals(
-        replace(STEP, accept=())
-    )
+
+
+def test_what_is_not_said_refuses() -> None:
+    """A summary, a program that shows it and one that stays rejected; blanks say nothing."""
+    assert (
+        "summary: does not say what it is",
+        "examples.accept: there is no program that shows it",
+        "examples.reject: there is no similar program that stays rejected",
+    ) == refusals(replace(STEP, summary=" \n", accept=(), reject=()))
 
 
 def test_an_example_may_show_another_reading() -> None:
@@ -212,7 +219,7 @@ def test_an_example_may_show_another_reading() -> None:
     )
     assert () == refusals(word)
     rule = edited(Widen("literal", (1, 1), "STRING STRING"), accept=("DEF A()\nX=1\nEND\n",))
-    (why,) = refusals(replace(rule, reject=()))
+    (why,) = refusals(replace(rule, reject=("DEF A(",)))
     assert "number 1 is read the same way" in why
 
 
@@ -220,7 +227,7 @@ def test_wording_needs_no_evidence() -> None:
     """Comments and layout may change without a ground and without an example."""
     words = edited(SetComment("literal", "What is written out."), evidence=Evidence(), accept=())
     assert () == refusals(replace(words, reject=()))
-    assert 2 == len(refusals(edited(AddToken("X"), evidence=Evidence(), accept=(), reject=())))
+    assert 3 == len(refusals(edited(AddToken("X"), evidence=Evidence(), accept=(), reject=())))
 
 
 def test_losses_are_between_any_two_grammars(tmp_path: Path) -> None:

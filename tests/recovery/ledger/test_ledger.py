@@ -23,6 +23,7 @@ def construct(number: int, word: str, *edits: Edit, state: str = "accepted") -> 
         edits=edits or (AddToken(word), AddAlternative("simpleStatement", f"{word} expression")),
         number=number,
         state=state,
+        summary=word,
         evidence=Evidence(rules=("CTL-01",)),
         accept=(f"DEF A()\n{word} 1\nEND\n",),
         reject=(f"DEF A()\n{word} =\nEND\n",),
