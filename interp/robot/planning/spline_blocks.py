@@ -115,11 +115,11 @@ def _pieces(
     for chain in chains_of(segments):
         pose_paths = pose_paths_of(chain)
         travelled = externals[number : number + len(chain) + 1]
-        for place, pose_path in enumerate(pose_paths):
+        ways = _others(pose_paths, travelled)
+        for place, (pose_path, others) in enumerate(zip(pose_paths, ways, strict=True)):
             settings = motion.parts[number].settings or motion.settings
             # Wrist axes in step would change their speed at each point, so they are not [ORI-03].
             settings = replace(settings, orientation="#VAR")
-            others = _others(pose_paths, travelled, place)
             length = max(pose_path.length, *np.degrees(pose_path.angles))
             if (
                 length < _STILL
@@ -138,15 +138,16 @@ def _pieces(
     return tuple(pieces)
 
 
-def _others(pose_paths: Sequence[PosePath], externals: Array, place: int) -> ExternalAxes:
-    """Return the external axes along a segment: a spline over the length of the chain."""
-    if len(pose_paths) == 1 or not externals.shape[1]:
-        return LinearExternals(externals[place], externals[place + 1])
+def _others(pose_paths: Sequence[PosePath], externals: Array) -> Sequence[ExternalAxes]:
+    """Return the external axes along each segment: a spline over the length of the chain."""
+    if len(pose_paths) == 1:
+        return [LinearExternals(*externals)]
     knots = np.cumsum([0.0, *(pose_path.length for pose_path in pose_paths)])
     from scipy.interpolate import CubicSpline
 
     spline = CubicSpline(knots, externals, bc_type="natural")
-    return Piecewise(spline, float(knots[place]), pose_paths[place].length)
+    places = zip(knots.tolist(), pose_paths, strict=False)
+    return [Piecewise(spline, start, pose_path.length) for start, pose_path in places]
 
 
 def _knot(pose: Pose) -> Knot:

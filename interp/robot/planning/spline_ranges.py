@@ -104,9 +104,12 @@ def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
         for stretch in pieces[number].limits.stretches
     )
     changed = list(pieces)
+    edges = []
     for number in inside:
         length = _length(pieces[number])
-        low, high = ((place - ends[number]) / length for place in (start, end))
+        places = np.clip((np.array([start, end]) - ends[number]) / length, 0.0, 1.0)
+        low, high = places.tolist()
+        edges.append(((number, low), (number, high)))
         whole = pieces[number].limits
         within = []
         for stretch in whole.between(low, high):
@@ -116,23 +119,23 @@ def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
             within.append(replace(stretch, programmed=most))
         stretches = (*whole.between(0.0, low), *within, *whole.between(high, 1.0))
         changed[number] = replace(pieces[number], limits=CurveLimits(stretches))
-    _check_reached(changed, ends, start, end, speed)
+    _check_reached(changed, edges[0][0], edges[-1][1], speed)
     return tuple(changed)
 
 
 def _check_reached(
-    pieces: Sequence[Piece], ends: Array, start: float, end: float, speed: float
+    pieces: Sequence[Piece], start: tuple[int, float], end: tuple[int, float], speed: float
 ) -> None:
-    """Raise `Fault` 3216 or 3217 unless a range is entered and left with its speed."""
+    """Raise `Fault` 3216 or 3217 unless a range is entered and left with its speed.
+
+    It goes from one number of a piece and its parameter to another.
+    """
     for number, stretch, profile in _travelled(pieces):
-        length = _length(pieces[number])
-        place = float(ends[number]) + stretch.start * length
-        first, out = profile.knots[0][2], profile.final
-        scale = length / stretch.size
-        if abs(place - start) < _SAME * length and first * scale < speed * (1.0 - _SAME):
+        scale = _length(pieces[number]) / stretch.size
+        least = speed * (1.0 - _SAME)
+        if (number, stretch.start) == start and profile.knots[0][2] * scale < least:
             raise _broken(3216, "the way to speed up before a range of constant speed is too short")
-        reached = place + (stretch.end - stretch.start) * length
-        if abs(reached - end) < _SAME * length and out * scale < speed * (1.0 - _SAME):
+        if (number, stretch.end) == end and profile.final * scale < least:
             raise _broken(3217, "the way to brake behind a range of constant speed is too short")
 
 
