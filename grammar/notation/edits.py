@@ -165,8 +165,12 @@ def _apply(grammar: Grammar, edit: Edit) -> Grammar:
         case RemoveRule(rule=name):
             return without_rule(grammar, _rule(grammar, name))
         case _:
-            rule = _rule(grammar, edit.rule)
-            return grammar.with_rule(read_rule(_new_text(rule, edit)))
+            return grammar.with_rule(apply_to_rule(_rule(grammar, edit.rule), edit))
+
+
+def apply_to_rule(rule: Rule, edit: EditOfRule) -> Rule:
+    """Return the rule after an edit of it; raises `GrammarError` if the edit does not fit."""
+    return read_rule(_new_text(rule, edit))
 
 
 def _rule(grammar: Grammar, name: str) -> Rule:

@@ -8,19 +8,21 @@ group that it does not repair are searched again.
 At the end, causes are merged if one edit repairs the lines of both: an edit sought anew for causes
 whose lines begin with the same word, or one made from the edits of two causes
 (`recovery.clustering.edit_merging`). Causes whose lines fail for the same reason
-(`recovery.clustering.reason`) are merged as well.
+(`recovery.clustering.reason`) are merged as well. The best proposals of the heaviest causes are
+completed (`recovery.clustering.completion`).
 """
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
-from itertools import permutations
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
+from recovery.clustering.completion import completed
 from recovery.clustering.edit_merging import (
     are_one_change,
     combined_edits,
@@ -32,17 +34,15 @@ from recovery.clustering.file_trial import FileTrial
 from recovery.clustering.reason import Reason
 from recovery.clustering.regression import ParsedFiles, no_parsed_files
 from recovery.clustering.search import CauseSearch
-from recovery.forms.parts import choices
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import (
-    BREADTH_FACTOR,
     CAUSES_PER_GROUP,
     FORM_SYMBOLS,
     HEAVY_GROUPS,
+    MOST_CAUSES_COMPLETED,
     MOST_COMPARED,
-    MOST_GATHERED,
     MOST_PROPOSALS,
 )
 from support.gc_pause import gc_paused
@@ -74,7 +74,10 @@ def find_causes(
             causes += _of_group(search, group)
             on_done(1)
         causes = merged_by_first_word(search, causes)
-    return merged_by_reason(search, merged_by_edits(search, causes), reasons)
+    causes = merged_by_reason(search, merged_by_edits(search, causes), reasons)
+    for place, cause in enumerate(causes[:MOST_CAUSES_COMPLETED]):
+        causes[place] = completed(search, cause)
+    return [replace(cause, proposals=cause.proposals[:MOST_PROPOSALS]) for cause in causes]
 
 
 def _of_group(search: CauseSearch, group: Sequence[int]) -> Iterator[Cause]:
@@ -173,112 +176,21 @@ def _words_for(reason: Reason | int, cause: Cause) -> frozenset[str]:
 def _gathers_again(search: CauseSearch, cause: Cause) -> str:
     """Return the rule that gets rules which nothing calls: what had gathered them is missing."""
     unused_in = search.finder.profile.unused_in
-    edits = (edit for best in cause.proposals[:1] for edit in _alternatives(best))
-    return next((edit.rule for edit in edits if unused_in(edit.text)), "")
+    edits = (edit for best in cause.proposals[:1] for edit in best.edits)
+    added = (edit for edit in edits if isinstance(edit, AddAlternative))
+    return next((edit.rule for edit in added if unused_in(edit.text)), "")
 
 
 def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
+    """Return the causes as one, with all their proposals and those that are found for all lines."""
     if len(causes) == 1:
         return causes[0]
     lines = frozenset(n for cause in causes for n in cause.lines)
-    found = list(dict.fromkeys(p for cause in causes for p in cause.proposals))
-    found += _gathered(search, found, lines)
-    return Cause(tuple(sorted(lines)), tuple(search.ranked(found, lines)[:MOST_PROPOSALS]))
-
-
-def _worth(search: CauseSearch, lines: frozenset[int], proposal: Proposal) -> float:
-    """Return the weight of the lines that a proposal repairs, reduced for its breadth."""
-    mended = sum(search.weights[n] for n in proposal.mended & lines)
-    return mended * BREADTH_FACTOR**proposal.breadth
-
-
-def _gathered(
-    search: CauseSearch, proposals: Sequence[Proposal], lines: frozenset[int]
-) -> list[Proposal]:
-    """Return one proposal with the alternatives that several of them add; none if one does as well.
-
-    Where a rule with several alternatives is missing, each of these is another proposal. They are
-    missing at one place, so first come the proposals for one rule: the rule in which they repair
-    most together. For lines that these do not repair an alternative of that rule is sought. No
-    words are reserved but those of the best proposal, and no more negatives are accepted.
-    """
-    best = max(proposals, key=partial(_worth, search, lines), default=None)
-    of_rule: dict[str, list[Proposal]] = defaultdict(list)
-    for proposal in proposals:
-        edit = proposal.edits[-1]
-        if isinstance(edit, AddAlternative) and best and _words(proposal) <= _words(best):
-            of_rule[edit.rule].append(proposal)
-    covers = {rule: _cover(search, some, lines) for rule, some in of_rule.items()}
-    if not covers:
-        return []
-    rule = max(covers, key=lambda rule: sum(_worth(search, lines, p) for p in covers[rule]))
-    chosen = covers[rule]
-    left = lines.difference(*(proposal.mended for proposal in chosen))
-    further = [p for p in _sought_in(search, rule, left) if _words(p) <= _words(chosen[0])]
-    left = left.difference(*(proposal.mended for proposal in further))
-    others = _cover(search, [p for some in of_rule.values() for p in some], left)
-    whole = chosen[0]
-    for proposal in (*chosen[1:], *further, *others)[:MOST_GATHERED]:
-        edits = combined_edits(proposal.edits, whole.edits)  # the first one remains the last edit
-        both = search.proposal(edits, max(whole.breadth, proposal.breadth) + 1)
-        is_more = both.mended & lines > whole.mended & lines
-        if is_more and both.accepts_negatives <= whole.accepts_negatives:
-            whole = both
-    return [] if whole is chosen[0] else [_completed(search, whole)]
-
-
-def _sought_in(search: CauseSearch, rule: str, lines: frozenset[int]) -> Iterator[Proposal]:
-    """Yield the best alternatives of a rule for lines, those with the same first word together."""
-    led: dict[str, list[int]] = defaultdict(list)
-    for n in sorted(lines):
-        led[search.lead(search.lines[n])].append(n)
-    for _, group in sorted(led.items()):
-        found = search.best_from_scratch(group, rule)
-        if found is not None:
-            yield search.proposal(found.proposals[0].edits, found.proposals[0].breadth)
-
-
-def _completed(search: CauseSearch, proposal: Proposal) -> Proposal:
-    """Return the proposal; two rules that get much the same alternatives get the same.
-
-    What is missing in both is one rule, of which one place need not show all.
-    """
-    ends = {e.rule: search.finder.closing(e.rule) for e in _alternatives(proposal)}
-    texts = {rule: dict.fromkeys(_texts(proposal, rule, ends[rule])) for rule in ends}
-    for rule, other in permutations(ends, 2):
-        common = texts[rule].keys() & texts[other].keys()
-        if len(common) > 1 and 2 * len(common) >= min(len(texts[rule]), len(texts[other])):
-            more = (" ".join((t, *ends[rule])) for t in texts[other] if t not in common)
-            edits = combined_edits([AddAlternative(rule, text) for text in more], proposal.edits)
-            wider = search.proposal(edits, proposal.breadth + 1)
-            is_safe = wider.accepts_negatives <= proposal.accepts_negatives
-            if is_safe and wider.mended >= proposal.mended:
-                proposal = wider
-    return proposal
-
-
-def _alternatives(proposal: Proposal) -> list[AddAlternative]:
-    return [edit for edit in proposal.edits if isinstance(edit, AddAlternative)]
-
-
-def _texts(proposal: Proposal, rule: str, end: Sequence[str]) -> list[str]:
-    """Return the alternatives that a rule gets, without line end; each of a choice by itself."""
-    texts = [edit.text for edit in _alternatives(proposal) if edit.rule == rule]
-    return [text for whole in texts for text in choices(whole.removesuffix(" ".join(("", *end))))]
-
-
-def _cover(
-    search: CauseSearch, proposals: Sequence[Proposal], lines: frozenset[int]
-) -> list[Proposal]:
-    """Return the proposals that repair most of the lines (greedy set cover)."""
-    cover: list[Proposal] = []
-    while proposals:
-        further = max(proposals, key=partial(_worth, search, lines))
-        if not further.mended & lines:
-            break
-        cover.append(further)
-        lines -= further.mended
-    return cover
+    found = {p.edits: p for cause in causes for p in cause.proposals}
+    again = search.best_from_scratch(sorted(lines))
+    for p in again.proposals if again else ():
+        found.setdefault(p.edits, search.proposal(p.edits, p.breadth))
+    return Cause(tuple(sorted(lines)), tuple(search.ranked(list(found.values()), lines)))
 
 
 def _words(proposal: Proposal) -> frozenset[str]:

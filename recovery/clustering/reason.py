@@ -2,7 +2,8 @@
 
 One gap in the grammar shows in a statement, a block, a header and a data list, and with each word
 of a kind. Common to all of them is the keyword that the grammar lacks, a keyword in the place of a
-name, a first word that no line has there, or a sign inside a kind of brackets.
+name, a first word that no line has there, a word that only lists of words have, or a sign inside a
+kind of brackets.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ class ReasonFinder:
 
     def __init__(self, recognizer: Recognizer) -> None:
         self._lexer = recognizer.lexer
-        self._kind_of_word = Vocabulary(recognizer).kinds_of_words
+        self._vocabulary = Vocabulary(recognizer)
+        self._kind_of_word = self._vocabulary.kinds_of_words
         self._matcher = RuleMatcher(recognizer)
         self._read = self._kinds_read(recognizer.network, recognizer.grammar.start)
 
@@ -41,11 +43,14 @@ class ReasonFinder:
             return ("word", new[0])
         kind = line.form.kinds[index]
         offender = lexer.names[kind] if kind >= 0 else ""
-        offender = self._kind_of_word.get(offender, offender)
-        lead = self._kind_of_word.get(signature.lead, signature.lead)
         is_word = lexer.is_keyword(kind)
+        is_orphan = is_word and not self._vocabulary.is_written(offender)
+        offender = self._kind_of_word.get(offender, offender)
         if is_word and lexer.name in context.expected and offender == lexer.names[kind]:
             return AS_NAME
+        if is_orphan:
+            return ("begins", offender)
+        lead = self._kind_of_word.get(signature.lead, signature.lead)
         if kind >= 0 and not is_word and kind not in self._read:
             return ("unread",)
         if lexer.has_value(kind) and lexer.name in context.expected:

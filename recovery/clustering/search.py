@@ -10,7 +10,7 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Sequence
 from typing import TypeVar
 
-from grammar.notation.edits import AddAlternative, AddToken, Edit
+from grammar.notation.edits import AddToken, Edit
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
 from recovery.clustering.edit_merging import merged_as_choice
@@ -78,13 +78,13 @@ class CauseSearch:
             self.same_token[self._token(number)].append(number)
             self.same_lead[lines[number].words()[0]].append(number)
 
-    def best_for(self, group: Sequence[int], rule: str = "") -> Cause | None:
+    def best_for(self, group: Sequence[int], rules: frozenset[str] | None = None) -> Cause | None:
         """Return the cause of the heaviest lines of a group, or ``None`` if no edit helps.
 
-        Where a ``rule`` is given, it is sought among the alternatives that this rule may get.
+        Where ``rules`` are given, it is sought among the edits of these, which reserve no word.
         """
         members = self._seek(group)
-        proposals = self._proposals(group, rule)
+        proposals = self._proposals(group, rules)
         for place, best in enumerate(proposals):
             # a line that only advances has its first cause here, and another one later
             taken = (best.mended & self.open) | (best.advanced & members)
@@ -103,16 +103,21 @@ class CauseSearch:
         self._has_words = all(self.lines[n].keywords for n in lines)
         return self._sought
 
-    def best_from_scratch(self, lines: Sequence[int], rule: str = "") -> Cause | None:
+    def best_from_scratch(self, lines: Sequence[int]) -> Cause | None:
         """Return the cause of the heaviest of these lines, as if there were no others."""
         self.is_thorough = True
         self.open = set(lines)
-        return self.best_for(lines, rule)
+        return self.best_for(lines)
 
     def proposal(self, edits: tuple[Edit, ...], breadth: int) -> Proposal:
         """Return the edits with their result on all lines, whatever the causes of these."""
         result = self.trial.result(edits)
         return Proposal(edits, result.mended, result.advanced, breadth, self.count_negatives(edits))
+
+    def readable_share(self, proposal: Proposal, lines: Sequence[int]) -> float:
+        """Return the share of files that fail first at these lines and can then be read further."""
+        wider = self.trial.wider(proposal.edits)
+        return 0.0 if wider is None else self.file_trial.readable_share(wider, lines)
 
     def with_entailed(self, cause: Cause) -> Cause:
         """Return the cause with the lines that only fail because of its own."""
@@ -125,7 +130,7 @@ class CauseSearch:
         more = self.file_trial.entailed(wider, mended, behind)
         return Cause(tuple(sorted({*cause.lines, *more})), cause.proposals)
 
-    def _proposals(self, group: Sequence[int], rule: str) -> list[Proposal]:
+    def _proposals(self, group: Sequence[int], rules: frozenset[str] | None) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))
         specimens = _spread(heavy, SPECIMENS if self.is_thorough else 1)
         most = MOST_TRIED if self.is_thorough else MOST_TRIED_LIGHT
@@ -136,7 +141,8 @@ class CauseSearch:
             (*near, *_spread(alike, VARIED_LINES), *_spread(led_alike, VARIED_LINES))
         )
         tried = self.finder.find_common([self.lines[n] for n in varied], most, len(near))
-        tried = [c for c in tried if not rule or c.place[:2] == (AddAlternative.__name__, rule)]
+        if rules is not None:
+            tried = [c for c in tried if rules.issuperset(getattr(e, "rule", "") for e in c.edits)]
         sample = set(specimens) | set(_spread(heavy, SAMPLE_LINES))
         sample |= set(_spread(alike, SAMPLE_LINES)) | varied.keys()
         first = self._tried(tried, most, sample)
@@ -145,7 +151,7 @@ class CauseSearch:
             for candidate in merged_as_choice([c for c, o in first if o.mended])
         ]
         proposals = []
-        blocks = [] if rule else self._blocks(specimens[0], heavy)
+        blocks = [] if rules else self._blocks(specimens[0], heavy)
         for candidate, negatives in (*blocks, *self._kept(first)):
             result = self.trial.result(candidate.edits, self.open)
             edits, breadth = candidate.edits, candidate.breadth
@@ -301,9 +307,8 @@ class CauseSearch:
         worth = {}
         alike = self._alike(lines[0])
         for p in proposals:
-            wider = self.trial.wider(p.edits)
-            readable_share = 0.0 if wider is None else self.file_trial.readable_share(wider, lines)
-            worth[p.edits] = self._worth(p, p) * (LINE_WEIGHT + (1 - LINE_WEIGHT) * readable_share)
+            part = LINE_WEIGHT + (1 - LINE_WEIGHT) * self.readable_share(p, lines)
+            worth[p.edits] = self._worth(p, p) * part
             if p.mended.issuperset(alike):
                 worth[p.edits] *= ALL_ALIKE_FACTOR
             if self._loses(p.edits):

@@ -5,6 +5,7 @@ import pytest
 from grammar.notation.edits import Edit, RemoveAlternative, RemoveElement, apply
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
+from grammar.notation.model import Grammar
 from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.reason import Reason, ReasonFinder
@@ -16,9 +17,9 @@ from recovery.survey.suspected_keywords import SuspectedKeywords
 _START = read_file(GRAMMAR.with_name("preliminary.g4"))
 
 
-def reasons(*texts: str, without: tuple[Edit, ...] = ()) -> list[Reason]:
+def reasons(*texts: str, without: tuple[Edit, ...] = (), start: Grammar = _START) -> list[Reason]:
     """The reason of the first failure of each program."""
-    grammar = apply(_START, without)
+    grammar = apply(start, without)
     recognizer = Recognizer(grammar)
     found = survey_texts([(f"{n}.src", text) for n, text in enumerate(texts)], grammar)
     failed = [(file.digest, file.failures[0]) for file in found.files]
@@ -85,6 +86,13 @@ def test_values_where_a_name_may_be_are_one_reason() -> None:
     """A rule of values is missing, though others read some of them."""
     texts = routine("X=1"), routine("X=2.5"), routine('X="A"')
     assert {("value",)} == set(reasons(*texts, without=(RemoveAlternative("primary", 1),)))
+
+
+def test_a_word_that_only_lists_have_is_one_reason() -> None:
+    """Whatever stands before it: its construct is missing."""
+    texts = [routine(f"{before}SIGNAL A X") for before in ("", "DECL ", "GLOBAL ")]
+    without = (RemoveAlternative("definition", 3),)
+    assert 1 == len(set(reasons(*texts, without=without, start=read_file(GRAMMAR))))
 
 
 def test_a_new_word_is_the_reason() -> None:
