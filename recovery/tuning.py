@@ -290,8 +290,9 @@ FORM_SYMBOLS = 4
 #: Edits that a merged cause may have: a person has to see at a glance that they are one. Measured:
 #: 54 clusters with 1.
 MOST_MERGED_EDITS = 3
-#: Causes that are completed, the heaviest; proposals of each, in different rules; how often what
-#: one leaves is sought; and groups of lines that are searched each time. Bound on time.
+#: Causes up to which they are completed: where there are more, lines fail for several, and more
+#: edits would mix them; proposals of each, in different rules; how often what one leaves is sought;
+#: and groups of lines that are searched each time. Bound on time.
 MOST_CAUSES_COMPLETED = 5
 MOST_COMPLETIONS = 8
 MOST_GROUPS_COMPLETED = 4

@@ -8,8 +8,8 @@ group that it does not repair are searched again.
 At the end, causes are merged if one edit repairs the lines of both: an edit sought anew for causes
 whose lines begin with the same word, or one made from the edits of two causes
 (`recovery.clustering.edit_merging`). Causes whose lines fail for the same reason
-(`recovery.clustering.reason`) are merged as well. The best proposals of the heaviest causes are
-completed (`recovery.clustering.completion`).
+(`recovery.clustering.reason`) are merged as well. Where few causes are left,
+their best proposals are completed (`recovery.clustering.completion`).
 """
 
 from __future__ import annotations
@@ -75,8 +75,8 @@ def find_causes(
             on_done(1)
         causes = merged_by_first_word(search, causes)
     causes = merged_by_reason(search, merged_by_edits(search, causes), reasons)
-    for place, cause in enumerate(causes[:MOST_CAUSES_COMPLETED]):
-        causes[place] = completed(search, cause)
+    if len(causes) <= MOST_CAUSES_COMPLETED:
+        causes = [completed(search, cause) for cause in causes]
     return [replace(cause, proposals=cause.proposals[:MOST_PROPOSALS]) for cause in causes]
 
 
