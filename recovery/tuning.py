@@ -174,8 +174,8 @@ SHARED_ELEMENTS = 4
 #: What is left of an edit's worth for each step in breadth: of two that mend nearly as much, the
 #: more restrictive is preferred. Measured: 58 clusters with 0.99.
 BREADTH_FACTOR = 0.995
-#: What each further edit of the same kind and rule has left, so that others are tried. Measured:
-#: other proposals with 0.86.
+#: What each further edit of the same rule has left, so that other rules are tried. Measured: other
+#: proposals with 0.86.
 SAME_RULE_FACTOR = 0.93
 #: Steps for a line with a word of its own and lines behind it: a part of a block. Measured: other
 #: proposals with 2.
@@ -290,6 +290,8 @@ FORM_SYMBOLS = 4
 #: Edits that a merged cause may have: a person has to see at a glance that they are one. Measured:
 #: 54 clusters with 1.
 MOST_MERGED_EDITS = 3
+#: Proposals whose alternatives are gathered in one: a missing rule has as many. Not measured.
+MOST_GATHERED = 16
 #: Causes up to which they are completed: where there are more, lines fail for several, and more
 #: edits would mix them; proposals of each, in different rules; how often what one leaves is sought;
 #: and groups of lines that are searched each time. Bound on time.

@@ -9,7 +9,8 @@ At the end, causes are merged if one edit repairs the lines of both: an edit sou
 whose lines begin with the same word, or one made from the edits of two causes
 (`recovery.clustering.edit_merging`). Causes whose lines fail for the same reason
 (`recovery.clustering.reason`) are merged as well. Where few causes are left,
-their best proposals are completed (`recovery.clustering.completion`).
+their best proposals are completed (`recovery.clustering.completion`), else alternatives that
+several proposals add to one rule are gathered.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from functools import partial
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
-from recovery.clustering.completion import completed
+from recovery.clustering.completion import as_one_rule, completed
 from recovery.clustering.edit_merging import (
     are_one_change,
     combined_edits,
@@ -38,11 +39,13 @@ from recovery.proposals.candidates import Candidate
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import (
+    BREADTH_FACTOR,
     CAUSES_PER_GROUP,
     FORM_SYMBOLS,
     HEAVY_GROUPS,
     MOST_CAUSES_COMPLETED,
     MOST_COMPARED,
+    MOST_GATHERED,
     MOST_PROPOSALS,
 )
 from support.gc_pause import gc_paused
@@ -75,8 +78,8 @@ def find_causes(
             on_done(1)
         causes = merged_by_first_word(search, causes)
     causes = merged_by_reason(search, merged_by_edits(search, causes), reasons)
-    if len(causes) <= MOST_CAUSES_COMPLETED:
-        causes = [completed(search, cause) for cause in causes]
+    more = completed if len(causes) <= MOST_CAUSES_COMPLETED else _with_gathered
+    causes = [more(search, cause) for cause in causes]
     return [replace(cause, proposals=cause.proposals[:MOST_PROPOSALS]) for cause in causes]
 
 
@@ -191,6 +194,67 @@ def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
     for p in again.proposals if again else ():
         found.setdefault(p.edits, search.proposal(p.edits, p.breadth))
     return Cause(tuple(sorted(lines)), tuple(search.ranked(list(found.values()), lines)))
+
+
+def _with_gathered(search: CauseSearch, cause: Cause) -> Cause:
+    """Return a cause of several with what its proposals do together."""
+    if len(cause.proposals) <= MOST_PROPOSALS:
+        return cause
+    found = [*cause.proposals, *_gathered(search, cause.proposals, frozenset(cause.lines))]
+    return replace(cause, proposals=tuple(search.ranked(found, cause.lines)))
+
+
+def _worth(search: CauseSearch, lines: frozenset[int], proposal: Proposal) -> float:
+    """Return the weight of the lines that a proposal repairs, reduced for its breadth."""
+    mended = sum(search.weights[n] for n in proposal.mended & lines)
+    return mended * BREADTH_FACTOR**proposal.breadth
+
+
+def _gathered(
+    search: CauseSearch, proposals: Sequence[Proposal], lines: frozenset[int]
+) -> list[Proposal]:
+    """Return one proposal with the alternatives that several of them add; none if one does as well.
+
+    Where a rule with several alternatives is missing, each of these is another proposal. They are
+    missing at one place, so first come the proposals for one rule: the rule in which they repair
+    most together. No words are reserved but those of the best proposal, and no more negatives are
+    accepted.
+    """
+    best = max(proposals, key=partial(_worth, search, lines), default=None)
+    of_rule: dict[str, list[Proposal]] = defaultdict(list)
+    for proposal in proposals:
+        edit = proposal.edits[-1]
+        if isinstance(edit, AddAlternative) and best and _words(proposal) <= _words(best):
+            of_rule[edit.rule].append(proposal)
+    covers = {rule: _cover(search, some, lines) for rule, some in of_rule.items()}
+    if not covers:
+        return []
+    rule = max(covers, key=lambda rule: sum(_worth(search, lines, p) for p in covers[rule]))
+    chosen = covers[rule]
+    left = lines.difference(*(proposal.mended for proposal in chosen))
+    others = _cover(search, [p for some in of_rule.values() for p in some], left)
+    whole = chosen[0]
+    for proposal in (*chosen[1:], *others)[:MOST_GATHERED]:
+        edits = combined_edits(proposal.edits, whole.edits)  # the first one remains the last edit
+        both = search.proposal(edits, max(whole.breadth, proposal.breadth) + 1)
+        is_more = both.mended & lines > whole.mended & lines
+        if is_more and both.accepts_negatives <= whole.accepts_negatives:
+            whole = both
+    return [] if whole is chosen[0] else [as_one_rule(search, whole)]
+
+
+def _cover(
+    search: CauseSearch, proposals: Sequence[Proposal], lines: frozenset[int]
+) -> list[Proposal]:
+    """Return the proposals that repair most of the lines (greedy set cover)."""
+    cover: list[Proposal] = []
+    while proposals:
+        further = max(proposals, key=partial(_worth, search, lines))
+        if not further.mended & lines:
+            break
+        cover.append(further)
+        lines -= further.mended
+    return cover
 
 
 def _words(proposal: Proposal) -> frozenset[str]:

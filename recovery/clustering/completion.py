@@ -59,7 +59,7 @@ def completed(search: CauseSearch, cause: Cause) -> Cause:
         if _share(search, proposal, cause.lines) >= LEAST_COMPLETED:
             more = _with_more(search, proposal, cause.lines, rules)
             if _share(search, more, cause.lines) >= NEARLY_ALL:
-                whole[proposal] = _as_one_rule(search, more)
+                whole[proposal] = as_one_rule(search, more)
     found = list(dict.fromkeys(whole.get(proposal, proposal) for proposal in cause.proposals))
     if found != list(cause.proposals):
         found = search.ranked(found, cause.lines)
@@ -72,7 +72,7 @@ def _share(search: CauseSearch, proposal: Proposal, lines: Sequence[int]) -> flo
     return mended / sum(search.weights[n] for n in lines)
 
 
-def _as_one_rule(search: CauseSearch, proposal: Proposal) -> Proposal:
+def as_one_rule(search: CauseSearch, proposal: Proposal) -> Proposal:
     """Return the proposal; two rules that get much the same alternatives get the same.
 
     What is missing in both is one rule, of which one place need not show all.

@@ -106,14 +106,14 @@ class CandidateFinder:
                 support[edits] |= choices_of_lines.keys()
                 ranks[edits] = min(rank, ranks.get(edits, rank))
         expected = {edits: _gain_expected(len(support[edits]), ranks[edits]) for edits in ranks}
-        alike: Counter[tuple[str, str]] = Counter()
+        in_rule: Counter[str] = Counter()
         varied: dict[tuple[Edit, ...], float] = {}
         spelled = {edits: str(edits) for edits in ranks}
         for edits in sorted(ranks, key=lambda e: (-expected[e], spelled[e])):
             if not self.profile.is_left_recursive(edits[-1]):
-                kind = type(edits[-1]).__name__, getattr(edits[-1], "rule", "")
-                varied[edits] = expected[edits] * SAME_RULE_FACTOR ** alike[kind]
-                alike[kind] += 1
+                rule = getattr(edits[-1], "rule", "")
+                varied[edits] = expected[edits] * SAME_RULE_FACTOR ** in_rule[rule]
+                in_rule[rule] += 1
         ordered = sorted(varied, key=lambda e: (-varied[e], spelled[e]))
         return [Candidate(edits, ranks[edits]) for edits in ordered]
 
