@@ -382,6 +382,8 @@ def _gap(modules: Sequence[Module], is_complete: bool) -> dict[Space, Reason]:
     """Return for each space why a name without a declaration may be declared all the same."""
     everything = [Space.VALUE, Space.ROUTINE, Space.TYPE, Space.CHANNEL]
     gap = {} if is_complete else dict.fromkeys(everything, Reason.MODULES_MISSING)
+    if not any(module.name == "$CUSTOM" for module in modules):  # it is in no backup of R1 alone
+        gap[Space.CHANNEL] = Reason.MODULES_MISSING
     for module in modules:
         if module.table is None and module.words is None:
             spaces = everything if module.suffix == ".dat" else [Space.ROUTINE]

@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from importlib import resources
+from operator import itemgetter
 from typing import Literal, TypeVar
 
 from grammar.semantics.rules import is_confirmed, tiers
@@ -158,6 +159,7 @@ class System:
 
     def __init__(self, release: Release | None) -> None:
         self.release = release
+        self.channels: Mapping[str, str] = _Entries("channels", release, itemgetter("name"))
         self._functions = _Entries("functions", release, self._function)
         self._messages = _Entries("messages", release, _message)
         self._types = _Entries("types", release, self._type)

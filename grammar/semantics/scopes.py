@@ -246,6 +246,8 @@ class SystemScope(Scope):
                 return self.system.functions
             case Space.TYPE:
                 return (*SCALARS, *self.system.types)
+            case Space.CHANNEL:
+                return self.system.channels
         return ()
 
     def own(self, space: Space, key: str) -> Found | None:
@@ -263,6 +265,8 @@ class SystemScope(Scope):
             return _given(Kind.VARIABLE, variable.name, variable.type)
         if space is Space.ROUTINE and key in self.system.functions:
             return _routine(self.system.functions[key])
+        if space is Space.CHANNEL and key in self.system.channels:
+            return _given(Kind.CHANNEL, self.system.channels[key], None)
         if space is Space.TYPE:
             if key in SCALARS:
                 return _type(key, SCALARS[key])

@@ -144,6 +144,6 @@ def _is_all_read(context: Context, use: Use) -> bool:
     project, begin = context.project, use.name.key[:SHARED]
     if not isinstance(use.answer, Undetermined) or _may_be_unread(use):
         return False
-    if use.space not in (Space.VALUE, Space.CHANNEL) or not project.has_config or begin[0] == "$":
+    if use.space is not Space.VALUE or not project.has_config or begin[0] == "$":
         return False
     return begin not in project.without_data

@@ -57,7 +57,16 @@ def test_every_entry_can_be_made(release: str | None) -> None:
     assert all(message == system.message(message.number) for message in system.messages)
 
 
-@pytest.mark.parametrize("table", ["variables.tsv", "types.tsv", "functions.tsv", "messages.tsv"])
+@pytest.mark.parametrize(
+    "table",
+    [
+        "variables.tsv",
+        "types.tsv",
+        "channels.tsv",
+        "functions.tsv",
+        "messages.tsv",
+    ],
+)
 def test_every_row_has_a_known_source(table: str) -> None:
     """A source is a key of the README or a rule that there is."""
     named = {key for row in rows(table) for key in row["source"].split()}
@@ -65,7 +74,7 @@ def test_every_row_has_a_known_source(table: str) -> None:
     assert all(row["source"] for row in rows(table))
 
 
-@pytest.mark.parametrize("table", ["variables.tsv", "types.tsv", "functions.tsv"])
+@pytest.mark.parametrize("table", ["variables.tsv", "types.tsv", "channels.tsv", "functions.tsv"])
 def test_names_are_sorted_and_stand_once_a_release(table: str) -> None:
     """System names come before those of files, sorted; a name twice has releases, newest first."""
     found = [(row.get("file", ""), row["name"].upper()) for row in rows(table)]

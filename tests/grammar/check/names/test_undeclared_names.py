@@ -29,6 +29,21 @@ END"""
     agrees(files, is_complete=None)
 
 
+def test_channels_of_the_controller_are_known(agrees: Agrees) -> None:
+    """The delivered ones are; others are in $custom.dat, so without it no channel is an error."""
+    cell = """DEF CELL()
+  INT H
+  COPEN(:SER_2, H)
+  COPEN(:CMD, H)
+  COPEN(:PRINTER, H) ;> KRL{}
+END"""
+    files = {"R1/System/$config.dat": CONFIG, "R1/cell.src": cell.format("701-")}
+    agrees(files, is_complete=None)
+    agrees(files)
+    custom = {"STEU/Mada/$custom.dat": "DEFDAT $CUSTOM\nENDDAT\n"}
+    agrees(files | custom | {"R1/cell.src": cell.format("101")})
+
+
 def test_without_config_only_a_slip_is_reported(agrees: Agrees) -> None:
     """Where $CONFIG is missing a slip is a warning, and any other name is a note."""
     cell = """DEF CELL()
