@@ -137,12 +137,11 @@ class InterruptUnit:
         task.triggers.clear()
         if task.name == "submit":
             return None
-        is_moving = self._arm.is_moving
         self._arm.discard()
         self._queue.fired.clear()
         return Blocked(
             request,
-            lambda: not is_moving or self._arm.is_standing,
+            lambda: self._arm.is_standing,
             lambda: None,
             is_open=False,  # the executor has left its routine, so other interrupts may be entered
         )

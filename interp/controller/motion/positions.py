@@ -116,7 +116,7 @@ class FramesInForce:
     def _robroot(self) -> Pose:
         """Return $ROBROOT of a data list, else that of the machine data."""
         found = pose_of(self._variables.read(("$ROBROOT",)))
-        if found is not None and found != IDENTITY:
+        if found not in (None, IDENTITY):
             return found
         return IDENTITY if self._machine is None else self._machine.robroot
 
