@@ -197,11 +197,11 @@ def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
 
 
 def _with_gathered(search: CauseSearch, cause: Cause) -> Cause:
-    """Return a cause of several with what its proposals do together."""
-    if len(cause.proposals) <= MOST_PROPOSALS:
+    """Return a cause with what its proposals do together."""
+    more = _gathered(search, cause.proposals, frozenset(cause.lines))
+    if not more:
         return cause
-    found = [*cause.proposals, *_gathered(search, cause.proposals, frozenset(cause.lines))]
-    return replace(cause, proposals=tuple(search.ranked(found, cause.lines)))
+    return replace(cause, proposals=tuple(search.ranked([*cause.proposals, *more], cause.lines)))
 
 
 def _worth(search: CauseSearch, lines: frozenset[int], proposal: Proposal) -> float:
