@@ -80,6 +80,10 @@ def run(app: typer.Typer, arguments: Sequence[str] | None = None) -> int:
     except Exception as error:  # a defect of ours, and still one line
         from concurrent.futures import BrokenExecutor  # only here, as it takes 3 ms
 
+        from grammar.syntax.node_plans import NoNode
+
+        if isinstance(error, NoNode):  # of a grammar that somebody extends
+            return _refuse(str(error))
         if isinstance(error, BrokenExecutor):
             return _refuse("a process of krl was ended from outside; the memory may have run out")
         if os.environ.get("KRL_TRACEBACK"):

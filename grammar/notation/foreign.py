@@ -2,8 +2,8 @@
 
 The result accepts the same texts. Actions and labels are dropped because they do not change what is
 accepted. Literals that only parser rules quote get a lexer rule. A left-recursive rule becomes one
-rule for each level of precedence. Keywords spelt with a fragment for each letter (``I F``) become
-literals of a grammar that ignores case.
+rule for each level of precedence. Where no rule reads EOF, a new start rule does. Keywords spelt
+with a fragment for each letter (``I F``) become literals of a grammar that ignores case.
 """
 
 from __future__ import annotations
@@ -41,9 +41,19 @@ def read_foreign(text: str, *, source: str = "grammar") -> Grammar:
     ``text``, except for a rule that was rewritten.
     """
     text = without_decoration(text)
-    for rewritten in (_with_keywords, _without_ends, _with_tokens, _with_levels):
+    for rewritten in (_with_end, _with_keywords, _without_ends, _with_tokens, _with_levels):
         text = rewritten(unchecked(text, source))
     return checked(unchecked(text, source), source)
+
+
+def _with_end(grammar: Grammar) -> str:
+    """Return the text with a start rule that reads to the end of the file, if no rule does."""
+    is_ended = any(isinstance(e, Reference) and e.name == "EOF" for e in _elements(grammar))
+    first = next((rule for rule in grammar.rules if not rule.is_lexer), None)
+    if is_ended or first is None:
+        return grammar.text
+    name = next(n for k in count() if (n := f"file{k or ''}") not in grammar.by_name)
+    return _spliced(grammar, {first.name: [(0, 0, f"{name} : {first.name} EOF ; ")]})
 
 
 def _with_keywords(grammar: Grammar) -> str:

@@ -33,7 +33,7 @@ from grammar.notation.model import (
     normalised,
 )
 from grammar.notation.unsupported import unsupported
-from grammar.notation.wellformed import problem
+from grammar.notation.wellformed import misuse, problem
 from support.files.untrusted import read_bytes
 
 #: How deep elements may be nested. Code that walks a rule relies on this limit and recurses.
@@ -91,14 +91,22 @@ def checked(grammar: Grammar, source: str) -> Grammar:
 
 
 def read_file(path: Path, reader: Callable[..., Grammar] = read) -> Grammar:
-    """Return the grammar in a file, parsed by ``reader``; raises `GrammarError` if that fails."""
+    """Return the grammar in a file, parsed by ``reader``.
+
+    Raises `GrammarError` if that fails, and for what nobody writes on purpose
+    (`grammar.notation.wellformed.misuse`).
+    """
     try:
         text = read_bytes(path).decode("utf-8")
     except OSError as error:
         raise GrammarError(f"{path}: {error.strerror or error}") from None
     except UnicodeDecodeError:
         raise GrammarError(f"{path}: not a grammar (not UTF-8 text)") from None
-    return reader(text, source=str(path))
+    grammar = reader(text, source=str(path))
+    wrong = misuse(grammar)
+    if wrong:
+        raise GrammarError(f"{path}:{wrong}")
+    return grammar
 
 
 @lru_cache(maxsize=1 << 12)
@@ -115,9 +123,9 @@ def _parse(text: str, start: str, source: str) -> Tree[Token]:
         place = len(text) if ended else int(getattr(error, "pos_in_stream", None) or 0)
         found = text[place : place + 12].splitlines()
         what = repr(found[0]) if found else "end"
-        wrong = f"{source}:{error.line}: not a grammar of our style: unexpected {what}"
+        wrong = f"{source}:{error.line}: syntax error at {what}"
         others = ", ".join(f"{part} (line {line})" for line, part in unsupported(text))
-        raise GrammarError(f"{wrong}; not understood: {others}" if others else wrong) from None
+        raise GrammarError(f"{wrong}; not supported: {others}" if others else wrong) from None
 
 
 # --------------------------------------------------------------------------- tree to data

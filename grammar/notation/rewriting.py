@@ -122,6 +122,8 @@ def with_token(grammar: Grammar, name: str) -> Grammar:
     """
     if name in grammar.by_name:
         raise GrammarError(f"token {name} exists already")
+    if not re.fullmatch(r"[A-Z][A-Za-z0-9_]*", name):
+        raise GrammarError(f"{name!r} is not the name of a token")
     keywords = [
         i for i, rule in enumerate(grammar.rules) if re.fullmatch(r"(\w+) : '\1' ;", rule.text)
     ]

@@ -66,6 +66,40 @@ def problem(grammar: Grammar) -> str | None:
     return f"{line}: rule {endless} has no end: every alternative needs it again"
 
 
+def misuse(grammar: Grammar) -> str | None:
+    """Return what nobody writes on purpose in a well-formed grammar, as ``LINE: text``.
+
+    It is read in endless ways, or never. ANTLR refuses the first and warns of a text that two
+    tokens have. Returns ``None`` if there is nothing of the kind.
+    """
+    return next(_misuses(grammar), None)
+
+
+def _misuses(grammar: Grammar) -> Iterator[str]:
+    lengths = _lengths(grammar.rules)
+    has_end = False
+    for index, rule in enumerate(grammar.rules):
+        elements = [e for a in rule.alternatives for e in walk(a)]
+        for element in elements:
+            match element:
+                case Reference(name="EOF"):
+                    has_end = True
+                case Repeat(item=item, operator="*" | "+") if not (
+                    rule.is_lexer or shortest_length(item, lengths)
+                ):
+                    what = f"{rule.source_of(element)} repeats what may be empty"
+                    yield f"{_line(grammar, index, element.span[0])}: rule {rule.name}: {what}"
+        match elements:
+            case [Literal(text=text)] if rule.is_lexer and not rule.is_fragment:
+                first = grammar.literal_tokens.get(grammar.fold(text), rule.name)
+                if first != rule.name:
+                    what = f"token {rule.name} is never read: {first} has the same text"
+                    yield f"{_line(grammar, index)}: {what}"
+    if not has_end:
+        line = _line(grammar, grammar.rules.index(grammar.by_name[grammar.start]))
+        yield f"{line}: no rule reads EOF, so no file can be read to its end"
+
+
 def _too_deep(grammar: Grammar) -> str | None:
     """Return the name of a lexer rule that is nested too deeply, or ``None``."""
     left = {rule.name: rule for rule in grammar.rules if rule.is_lexer}

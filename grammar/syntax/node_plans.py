@@ -38,6 +38,20 @@ class TooDeep(Exception):
         self.first = first
 
 
+class NoNode(Exception):
+    """The grammar reads a form of a rule that no function here expects."""
+
+    def __init__(self, rule: str) -> None:
+        super().__init__(rule)
+        self.rule = rule
+
+    def __str__(self) -> str:
+        return (
+            f"the syntax tree has no node for a form of {self.rule} that the grammar reads: see "
+            "CONTRIBUTING.md, the recipe for constructs, step 6"
+        )
+
+
 class DraftPart(NamedTuple):
     """A child of a rule: a token, whose value is its slot, or a rule and its result.
 
@@ -153,7 +167,7 @@ def draft(
     """Return the plan of an outline.
 
     ``names`` are the token names by kind. A rule in ``chains`` is skipped if its only child is a
-    rule. Raises `TooDeep`.
+    rule. Raises `TooDeep`, and `NoNode` where the rules do not know what the grammar reads.
     """
     plan = Draft(outline.width)
     top: list[DraftPart] = []
@@ -162,6 +176,8 @@ def draft(
         frame = frames[-1]
         if len(frames) > _MOST_FRAMES:
             raise TooDeep(frame.first)
+        if frame.inner.rule not in rules:
+            raise NoNode(frame.inner.rule)
         if frame.place < len(frame.inner.children):
             child = frame.inner.children[frame.place]
             frame.place += 1
@@ -174,7 +190,10 @@ def draft(
                 frame.parts.append(DraftPart(names[child], at, at, at + 1))
         else:
             frames.pop()
-            value = rules[frame.inner.rule](plan, frame.parts)
+            try:
+                value = rules[frame.inner.rule](plan, frame.parts)
+            except (AssertionError, LookupError, TypeError, ValueError):
+                raise NoNode(frame.inner.rule) from None
             frame.above.append(DraftPart(frame.outline.rule, value, frame.first, frame.at))
     return plan.plan(top[0].value)
 

@@ -107,10 +107,8 @@ def _with_value(span: Span, plain: ast.Declarator, value: ast.Expression) -> ast
 
 def _statement(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     """Return the statement; a call is an expression too, and is wrapped in a statement here."""
-    (only,) = parts
-    if only.symbol == "call":
-        return draft.over(ast.CallStatement, parts, only.value)
-    return only.value
+    value = _only(draft, parts)
+    return draft.over(ast.CallStatement, parts, value) if parts[0].symbol == "call" else value
 
 
 def _wait(draft: Draft, parts: Sequence[DraftPart]) -> Value:
@@ -190,6 +188,7 @@ def _spline_item(draft: Draft, parts: Sequence[DraftPart]) -> Value:
 def _only(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
     """Return the value of the only child: the rule is a choice between rules."""
     (only,) = parts
+    assert only.symbol[0].islower(), only.symbol
     return only.value
 
 
@@ -223,6 +222,7 @@ def _in_order(kind: type[ast.Node]) -> Rule:
 
     def rule(draft: Draft, parts: Sequence[DraftPart]) -> Value:
         values = [part.value for part in parts if part.symbol[0].islower()]
+        assert len(values) <= count, values
         return draft.over(kind, parts, *values, *[None] * (count - len(values)))
 
     return rule

@@ -85,14 +85,18 @@ def recover(
         ),
     ] = 0,
     hold_out: Annotated[
-        float,
+        float | None,
         typer.Option(
-            metavar="FRACTION", help="With --auto: share of origins used only to measure."
+            metavar="FRACTION",
+            help="With --auto: share of origins used only to measure; default: 0.",
         ),
-    ] = 0.0,
+    ] = None,
     seed: Annotated[
-        int, typer.Option(metavar="N", help="With --auto: seed of what is held out or removed.")
-    ] = 1,
+        int | None,
+        typer.Option(
+            metavar="N", help="With --auto: seed of what is held out or removed; default: 1."
+        ),
+    ] = None,
     target: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="With --auto: compare the result with this .g4."),
@@ -105,7 +109,11 @@ def recover(
         ),
     ] = "",
     resume: Annotated[
-        bool, typer.Option("--resume", help="With --auto: continue from the state in --out DIR.")
+        bool,
+        typer.Option(
+            "--resume",
+            help="With --auto: continue from the state in --out DIR, which holds the options.",
+        ),
     ] = False,
     strike: Annotated[
         list[str] | None,
@@ -129,15 +137,16 @@ def recover(
             negatives,
             target,
             without=without,
-            fraction=hold_out,
+            hold_out=hold_out,
             seed=seed,
             strike=strike or (),
             resume=resume,
             suffix=suffix,
         )
-    if hold_out or without or resume or strike or target or suffix:
+    if hold_out or without or seed is not None or resume or strike or target or suffix:
         raise InputError(
-            "--hold-out, --without, --target, --suffix, --resume and --strike belong to --auto"
+            "--hold-out, --without, --seed, --target, --suffix, --resume and --strike belong to "
+            "--auto"
         )
     name = "grammar/KRL.g4" if grammar is None else grammar.as_posix()
     if scheduler is not None:

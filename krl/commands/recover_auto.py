@@ -2,7 +2,7 @@
 
 import json
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,8 +19,16 @@ if TYPE_CHECKING:
     from recovery.induction.induced_ledger import InducedLedger
     from recovery.induction.rounds import Induction
     from recovery.induction.target_comparison import Share
-    from recovery.ledger.construct import Construct
 
+# How a growth began, as its record says it.
+_DEFAULTS: Mapping[str, Any] = {
+    "start": "",
+    "without": (),
+    "held_out": (),
+    "hold_out": 0.0,
+    "seed": 1,
+    "suffix": "",
+}
 # The number of generated negatives that edits are tested with, drawn evenly from more, and their
 # seed, which neither a bench nor the comparison with the target uses.
 _NEGATIVES = 1_500
@@ -36,23 +44,25 @@ def recover_auto(
     target: Path | None,
     *,
     without: int,
-    fraction: float,
-    seed: int,
+    hold_out: float | None,
+    seed: int | None,
     strike: Sequence[str],
     resume: bool,
-    suffix: str = "",
+    suffix: str,
 ) -> int:
     """Grow a grammar from a corpus and write it, its ledger, its record and its page to ``out``.
 
     It starts from ``grammar``, or from the restrictive start, or from the grammar in force less
     ``without`` constructs. ``suffix`` is the file extension for languages other than KRL.
-    Everything is written after each round, so that an interruption loses no more than one. At the
-    end the grown grammar is compared with ``target``.
+    Everything is written after each round, so that an interruption loses no more than one. A growth
+    is continued with the settings that ``out`` holds. At the end the grown grammar is compared with
+    ``target``.
     """
     from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
     from grammar.parser.lexer import ABSENT, lexer_of
-    from recovery.induction.corpus_lines import held_out
+    from recovery.induction.corpus_lines import drawn_origins, held_out
+    from recovery.induction.induced_ledger import InducedLedger
     from recovery.induction.rounds import Induction
     from recovery.induction.target_comparison import compared
     from recovery.language import KRL, language_of
@@ -60,31 +70,44 @@ def recover_auto(
     from recovery.negatives.negatives import NegativeSet, load
 
     began = time.monotonic()
-    _check(grammar, without, fraction, suffix, is_continued=resume or bool(strike))
+    is_continued = resume or bool(strike)
+    _check(grammar, without, hold_out, suffix, is_continued=is_continued)
+    given = {"hold_out": hold_out, "seed": seed, "suffix": suffix or None}
+    settings = _settings(given, out, is_continued=is_continued)
     with expected_errors():
-        start, name, taken_out = _start(grammar, without, seed)
+        if is_continued:
+            ledger, struck = _ledger_so_far(grammar, out, strike)
+        else:
+            start, names = _start(grammar, without, settings["seed"])
+            settings |= names
+            ledger, struck = InducedLedger(start, start), []
         rejected = load(negatives) if negatives else ()
         goal = read_file(target, read_foreign) if target else None
-        language = language_of(suffix) if suffix else KRL
+        language = language_of(settings["suffix"]) if settings["suffix"] else KRL
         files = language.files(roots)
-        ledger, struck = _ledger_so_far(start, out, strike, resume=resume)
-    for construct in taken_out:
-        typer.echo(f"taken out: {construct.id} {construct.title}")
     lexer = lexer_of(ledger.start)
     for kind, what in ((lexer.line_kind, "line ends"), (lexer.name_kind, "names")):
         if kind == ABSENT:
             raise InputError(
                 f"the grammar to start from has no token of {what}, which growing needs"
             )
-    shown, held, origins = held_out(files, fraction, seed)
     if not files:
         raise InputError("no readable source was found")
+    if not is_continued:
+        settings["held_out"] = drawn_origins(files, settings["hold_out"], settings["seed"])
+    shown, held = held_out(files, settings["held_out"])
+    if settings["hold_out"] and not held:
+        raise InputError(
+            f"--hold-out {settings['hold_out']:g} holds no file out: there are too few origins"
+        )
     if not shown:
         raise InputError("no file is left to learn from: hold out less")
     generated = evenly(language.negatives(4 * _NEGATIVES, _SEED), _NEGATIVES)
     every = NegativeSet((*rejected, *generated))
-    induction = Induction(ledger.grammar, shown, held, every, language=language, struck=struck)
-    written = _Output(ledger, struck, out, json_file, name, taken_out, origins, seed, began)
+    induction = Induction(
+        ledger.grammar, shown, held, every, language=language, struck=struck, start=ledger.start
+    )
+    written = _Output(ledger, struck, out, json_file, settings, began)
     is_finished = _grow(induction, written)
     reached = None
     if target and goal:
@@ -98,19 +121,53 @@ def recover_auto(
 
 
 def _check(
-    grammar: Path | None, without: int, fraction: float, suffix: str, *, is_continued: bool
+    grammar: Path | None, without: int, hold_out: float | None, suffix: str, *, is_continued: bool
 ) -> None:
     """Raise `InputError` if options contradict one another."""
-    if suffix and not grammar:
+    if suffix and not (grammar or is_continued):
         raise InputError(f"--suffix {suffix}: a language other than KRL needs --grammar FILE")
     if without and (grammar or is_continued):
         raise InputError("--without starts from the grammar in force: give it alone")
-    if not 0 <= fraction < 1:
-        raise InputError(f"--hold-out {fraction:g}: not from 0 to less than 1")
+    if not 0 <= (hold_out or 0) < 1:
+        raise InputError(f"--hold-out {hold_out:g}: not from 0 to less than 1")
 
 
-def _start(grammar: Path | None, without: int, seed: int) -> "tuple[Grammar, str, list[Construct]]":
-    """Return the grammar to start from, its name, and the constructs that were taken out of it."""
+def _settings(given: Mapping[str, Any], out: Path, *, is_continued: bool) -> dict[str, Any]:
+    """Return the settings of a growth: those in ``out`` if it is continued, else those given.
+
+    ``None`` is not given. Raises `InputError` if one that is given differs from that in ``out``.
+    """
+    given = {name: value for name, value in given.items() if value is not None}
+    if not is_continued:
+        return {**_DEFAULTS, **given}
+    known = _state(out)
+    for name, value in given.items():
+        if value != known.get(name, value):
+            option = name.replace("_", "-")
+            raise InputError(f"--{option} {value}: {out} was begun with {known[name] or 'none'}")
+    return {**_DEFAULTS, **given, **known}
+
+
+def _state(out: Path) -> dict[str, Any]:
+    """Return the settings in the record of a growth, without those that it lacks."""
+    from support.files.untrusted import json_of, read_bytes
+
+    file = out / "auto.json"
+    if not (file.is_file() and (out / "start.g4").is_file()):
+        raise InputError(f"{out}: there is nothing to resume")
+    try:
+        record = json_of(read_bytes(file).decode())
+        if not isinstance(record, dict):
+            raise TypeError
+        known = {name: type(d)(record[name]) for name, d in _DEFAULTS.items() if name in record}
+        hash(tuple(known.values()))  # names of origins are texts
+    except (ValueError, TypeError):
+        raise InputError(f"{file}: not the record of an automatic recovery") from None
+    return known
+
+
+def _start(grammar: Path | None, without: int, seed: int) -> "tuple[Grammar, dict[str, Any]]":
+    """Return the grammar to start from, and as settings its name and what was taken out of it."""
     from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
@@ -120,29 +177,34 @@ def _start(grammar: Path | None, without: int, seed: int) -> "tuple[Grammar, str
     file = grammar or GRAMMAR.with_name("preliminary.g4")
     start = read_file(file, read_foreign)
     if not without:
-        return start, file.name, []
+        return start, {"start": file.name}
     accepted = Ledger.read(GRAMMAR.with_name("constructs")).accepted
     if without > len(accepted):
         raise InputError(f"--without {without}: there are {len(accepted)} constructs")
     less, gone = without_some(start, accepted, without, seed)
-    return less, f"KRL.g4 less {len(gone)} constructs", gone
+    for construct in gone:
+        typer.echo(f"taken out: {construct.id} {construct.title}")
+    ids = tuple(construct.id for construct in gone)
+    return less, {"start": f"KRL.g4 less {len(gone)} constructs", "without": ids}
 
 
 def _ledger_so_far(
-    start: "Grammar", out: Path, strike: Sequence[str], *, resume: bool
+    grammar: Path | None, out: Path, strike: Sequence[str]
 ) -> "tuple[InducedLedger, list[tuple[Edit, ...]]]":
-    """Return where to continue, and the edits that must not be taken again."""
+    """Return where to continue, and the edits that must not be taken again.
+
+    Raises `InputError` if ``grammar`` is not the one that the growth began with.
+    """
     from grammar.notation.edits import from_data
+    from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
     from recovery.induction.induced_ledger import InducedLedger, without
     from recovery.ledger.ledger import Ledger, in_force
     from support.files.untrusted import read_bytes
 
-    if not (resume or strike):
-        return InducedLedger(start, start), []
-    if not (out / "start.g4").is_file():
-        raise InputError(f"{out}: there is nothing to resume")
     start = read_file(out / "start.g4")
+    if grammar and read_file(grammar, read_foreign).text != start.text:
+        raise InputError(f"--grammar {grammar}: {out} was begun with another grammar")
     constructs = list(Ledger.read(out / "constructs").constructs)
     struck_file = out / "struck.json"
     struck: list[tuple[Edit, ...]] = []
@@ -185,10 +247,7 @@ class _Output:
     struck: "Sequence[Sequence[Edit]]"
     out: Path
     json_file: Path | None
-    start: str
-    taken_out: "Sequence[Construct]"
-    held_out: Sequence[str]
-    seed: int
+    settings: Mapping[str, Any]
     began: float  # by the monotonic clock, in s
 
     def write(self, is_finished: bool = False, reached: dict[str, Any] | None = None) -> Path:
@@ -202,10 +261,7 @@ class _Output:
         ledger, out = self.ledger, self.out
         record = record_of(
             ledger,
-            start=self.start,
-            taken_out=self.taken_out,
-            held_out=self.held_out,
-            seed=self.seed,
+            **self.settings,
             seconds=time.monotonic() - self.began,
             is_finished=is_finished,
             target=reached,

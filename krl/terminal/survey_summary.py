@@ -28,13 +28,15 @@ def print_survey(record: "SurveyRecord", page: Path) -> None:
     console.print(
         f"{counted(files, 'file')}, {record['bytes'] / 1e6:.2f} MB; parsed {parsed:,} "
         f"({share(parsed, files)} of files, {share(record['parsed_bytes'], record['bytes'])} "
-        f"of bytes); skipped {len(record['skipped']):,}; {record['seconds']:.1f} s",
+        f"of bytes); skipped {len(record['skipped']):,}; surveyed in {record['seconds']:.1f} s",
         soft_wrap=True,
     )
     for skipped in record["skipped"][:_SKIPPED]:
         console.print(
             f"skipped {one_line(skipped['path'])}: {one_line(skipped['reason'])}", markup=False
         )
+    if len(record["skipped"]) > _SKIPPED:
+        console.print(f"… and {len(record['skipped']) - _SKIPPED:,} more skipped")
     clusters = record["clusters"]
     if clusters:
         console.print(_table(clusters[:_ROWS], has_examples=console.width >= _WIDE))

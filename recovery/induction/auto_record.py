@@ -12,31 +12,35 @@ from importlib import metadata
 from typing import Any
 
 from recovery.induction.induced_ledger import InducedLedger
-from recovery.ledger.construct import Construct
 
 
 def record_of(
     ledger: InducedLedger,
     *,
     start: str,
-    taken_out: Sequence[Construct],
+    without: Sequence[str],
     held_out: Sequence[str],
+    hold_out: float,
     seed: int,
+    suffix: str,
     seconds: float,
     is_finished: bool,
     target: Mapping[str, Any] | None,
 ) -> dict[str, Any]:
     """Return the record of the rounds so far.
 
-    ``start`` is the name of the grammar at the start, ``taken_out`` are the constructs that it
-    lacks, ``held_out`` the origins that were not shown. ``target`` compares the result with another
-    grammar (`recovery.induction.target_comparison`).
+    ``start`` is the name of the grammar at the start, ``without`` are the IDs of the constructs
+    that it lacks. ``held_out`` are the origins that were not shown, ``hold_out`` is the share that
+    was asked for. ``suffix`` is that of the files, empty for KRL. ``target`` compares the result
+    with another grammar (`recovery.induction.target_comparison`).
     """
     record: dict[str, Any] = {
         "start": start,
         "start_sha256": ledger.start.sha256,
-        "without": [construct.id for construct in taken_out],
+        "without": list(without),
         "held_out": list(held_out),
+        "hold_out": hold_out,
+        "suffix": suffix,
         "seed": seed,
         "rounds": ledger.rounds,
         "finished": is_finished,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from random import Random
 
@@ -13,19 +13,24 @@ from recovery.proposals.blocks import lines_of
 from recovery.tuning import INNER_SHARE
 
 
+def drawn_origins(files: Sequence[CorpusFile], fraction: float, seed: int) -> tuple[str, ...]:
+    """Return the origins to hold out, drawn by a seed and sorted."""
+    origins = sorted({origin for file in files for origin in file.origins})
+    Random(seed).shuffle(origins)
+    return tuple(sorted(origins[: round(len(origins) * fraction)]))
+
+
 def held_out(
-    files: Sequence[CorpusFile], fraction: float, seed: int
-) -> tuple[tuple[CorpusFile, ...], tuple[CorpusFile, ...], tuple[str, ...]]:
-    """Return the shown files, the held-out files, and the held-out origins, drawn by a seed.
+    files: Sequence[CorpusFile], origins: Iterable[str]
+) -> tuple[tuple[CorpusFile, ...], tuple[CorpusFile, ...]]:
+    """Return the shown files and those of the held-out ``origins``.
 
     A content that also occurs in a shown origin is shown.
     """
-    origins = sorted({origin for file in files for origin in file.origins})
-    Random(seed).shuffle(origins)
-    kept = frozenset(origins[: round(len(origins) * fraction)])
+    kept = frozenset(origins)
     shown = tuple(file for file in files if not file.origins <= kept)
     held = tuple(file for file in files if file.origins <= kept)
-    return shown, held, tuple(sorted(kept))
+    return shown, held
 
 
 class CorpusLines:

@@ -91,13 +91,16 @@ class Induction:
         language: Language | None = None,
         origins: int = 2,
         struck: Collection[tuple[Edit, ...]] = (),
+        start: Grammar | None = None,
     ) -> None:
         """``origins`` have to show an edit, while any does; ``struck`` edits are not taken.
 
-        ``language`` is that of the ``negatives``.
+        ``language`` is that of the ``negatives``. ``start`` is the grammar before the first round,
+        if ``grammar`` is one that has grown.
         """
         self.struck = frozenset(struck)
-        self.grammar = self._start = grammar
+        self.grammar = grammar
+        self._start = start or grammar
         self.shown = ShownFiles(shown)
         self.held = held
         self.negatives = negatives

@@ -144,7 +144,7 @@ def _figures(record: Record, clusters: Sequence[Record]) -> Iterator[Figure]:
         "skipped", f"{skipped:,}", "not KRL, reasons below" if skipped else "nothing left out"
     )
     yield Figure(
-        "seconds",
+        "seconds to survey",
         f"{seconds:,.1f}" if seconds >= 0.1 else f"{seconds:.2g}",
         f"{size(octets / seconds)}/s" if seconds > 0 else "",
     )

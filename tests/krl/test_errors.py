@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import typer
 
+from grammar.syntax.node_plans import NoNode
 from krl import errors
 
 
@@ -43,6 +44,11 @@ def test_status_is_what_the_command_returns(result: int | None, status: int) -> 
         (PermissionError(), "krl: PermissionError"),
         (errors.InputError("two\n  lines\x1b[2J"), "krl: two lines\\x1b[2J"),
         (errors.InputError("x" * 9_000), f"krl: {'x' * 2_000} …"),
+        (
+            NoNode("halt"),
+            "krl: the syntax tree has no node for a form of halt that the grammar reads: "
+            "see CONTRIBUTING.md, the recipe for constructs, step 6",
+        ),
         (
             BrokenProcessPool("terminated abruptly"),
             "krl: a process of krl was ended from outside; the memory may have run out",

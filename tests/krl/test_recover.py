@@ -335,9 +335,20 @@ def test_the_terminal_shows_the_figures_and_the_first_causes(surveyed: Surveyed)
     said = surveyed.said
     assert said.startswith("5 files, ")
     assert "parsed 1 (20.0 % of files" in said
-    assert "skipped 1" in said
+    assert "skipped 1; surveyed in " in said
     assert all(entry["id"] in said for entry in record(surveyed.out)["clusters"])
     assert said.endswith(f"Page: {surveyed.out / 'index.html'}\n")
+
+
+def test_skipped_files_are_counted_on(
+    tmp_path: Path, small: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The first five are listed, and it says how many are not."""
+    junk = {f"junk{n}": bytes(range(256)) * (n + 9) for n in range(7)}
+    assert 0 == recover(lay(tmp_path / "c", **junk, fine=FINE), "--out", tmp_path, grammar=small)
+    said = capsys.readouterr().out.splitlines()
+    assert 5 == sum(line.startswith("skipped ") for line in said)
+    assert "… and 2 more skipped" in said
 
 
 def test_a_corpus_that_parses_is_reported(

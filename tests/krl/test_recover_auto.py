@@ -177,8 +177,46 @@ def test_an_interrupted_run_keeps_what_was_done(
         patched.setattr(Induction, "rounds", two)
         assert auto(corpus, *options) == 0
     assert (2, False) == (len(record(tmp_path)["rounds"]), record(tmp_path)["finished"])
-    assert auto(corpus, *options, "--resume") == 0
+    begun = record(tmp_path)
+    assert auto(corpus, "--out", tmp_path, "--resume") == 0
     assert (out / "grammar.g4").read_bytes() == (tmp_path / "grammar.g4").read_bytes()
+    kept = ("start", "without", "held_out", "hold_out", "seed", "suffix")
+    assert [begun[key] for key in kept] == [record(tmp_path)[key] for key in kept]
+    assert (1, 0.33, 3) == (len(begun["held_out"]), begun["hold_out"], begun["seed"])
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "said"),
+    [
+        ("--hold-out", "0.5", "--hold-out 0.5: {} was begun with 0.33"),
+        ("--seed", "4", "--seed 4: {} was begun with 3"),
+        ("--suffix", ".s", "--suffix .s: {} was begun with none"),
+        ("--grammar", str(GRAMMAR), f"--grammar {GRAMMAR}: {{}} was begun with another grammar"),
+    ],
+)
+def test_a_growth_is_continued_with_its_own_options(
+    corpus: Path,
+    out: Path,
+    option: str,
+    value: str,
+    said: str,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Another share, seed, suffix or grammar than at the start is refused in one line."""
+    assert auto(corpus, "--out", out, "--resume", option, value) == 2
+    assert f"krl: {said.format(out)}\n" == capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"held_out": [[]]}', '{"seed": "x"}', '{"seed": []}'])
+def test_a_record_that_is_none(
+    corpus: Path, out: Path, tmp_path: Path, text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What is no record of a growth is named in one line."""
+    shutil.copy(out / "start.g4", tmp_path)
+    (tmp_path / "auto.json").write_text(text)
+    assert auto(corpus, "--out", tmp_path, "--resume") == 2
+    file = tmp_path / "auto.json"
+    assert f"krl: {file}: not the record of an automatic recovery\n" == capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -190,6 +228,8 @@ def test_an_interrupted_run_keeps_what_was_done(
         (["--target", "KRL.g4"], "belong to --auto"),
         (["--without", "3"], "belong to --auto"),
         (["--suffix", ".s"], "belong to --auto"),
+        (["--seed", "4"], "--seed"),
+        (["--auto", "--hold-out", "0.1"], "--hold-out 0.1 holds no file out"),
         (["--auto", "--suffix", ".s"], "needs --grammar"),
         (["--auto", "--without", "3000"], "--without 3000"),
         (["--auto", "--without", "3", "--resume"], "--without"),
@@ -210,8 +250,9 @@ def test_a_start_without_line_ends(
 ) -> None:
     """A start that skips line ends is refused, also one that lies where growing is to go on."""
     start = tmp_path / "start.g4"
-    start.write_text("grammar S;\nstart : WORD* ;\nWORD : [A-Z]+ ;\nEND : '\\n' -> skip ;\n")
+    start.write_text("grammar S;\nstart : WORD* EOF ;\nWORD : [A-Z]+ ;\nEND : '\\n' -> skip ;\n")
     (tmp_path / "constructs").mkdir()
+    (tmp_path / "auto.json").write_text("{}")
     assert auto(corpus, *(option.format(tmp_path) for option in options)) == 2
     assert "no token of line ends" in capsys.readouterr().err
 

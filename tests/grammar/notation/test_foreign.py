@@ -28,6 +28,14 @@ def test_quoted_texts_get_tokens() -> None:
     assert [True, False] == _accepts("s : 'go' 'é'? NAME '..' NAME EOF ;", "go a..b", "a b..c")
 
 
+def test_the_end_of_the_file_is_implied() -> None:
+    """A start rule without EOF, also one that calls itself, reads to the end; lines stay."""
+    for rules in ("s : NAME+ ;", "s : NAME s? ;", "s : file ;\nfile : NAME+ ;"):
+        assert [True, True, False] == _accepts(rules, "a", "a b c", "a b 3")
+    with pytest.raises(GrammarError, match="grammar:3: rule t: missing"):
+        read_foreign("grammar x;\ns : NAME ;\nt : missing ;\nNAME : [a-z]+ ;\n")
+
+
 def test_words_spelt_by_fragments() -> None:
     """They are keywords of a grammar that ignores case."""
     letters = "".join(f"fragment {c} : ('{c.lower()}' | '{c}') ;\n" for c in "GO")

@@ -248,18 +248,18 @@ def test_exchanging_a_rule() -> None:
 @pytest.mark.parametrize(
     ("rules", "line", "message"),
     [
-        ("s\n  : A {skip();}\n  ;", 3, "unexpected '{skip();}'"),
-        ("s : {true}? A ;", 2, "unexpected '{true}? A ;'"),
-        ("s : x=A ;", 2, "unexpected '=A ;'"),
-        ("s : A ;\nimport Other;", 3, "unexpected 'Other;'"),
-        ("s : A\nt : B ;", 3, "unexpected ': B ;'"),
-        ("s : A ;;", 2, "unexpected ';'"),
-        ("s : A ;\nmode INSIDE;", 3, "unexpected 'INSIDE;'"),
-        ("s : 'a ;", 2, 'unexpected "\'a ;"'),
-        ("s : A ;\nC : [] ;", 3, "unexpected '[] ;'"),
-        ("s : A ;\nC : '\\uXY12' ;", 3, "unexpected"),
-        ("s : A ;\nC : '\\u{1F916}' ;", 3, "unexpected"),
-        ("s : A ;\nC : [\\p{Lu}] ;", 3, "unexpected"),
+        ("s\n  : A {skip();}\n  ;", 3, "syntax error at '{skip();}'"),
+        ("s : {true}? A ;", 2, "syntax error at '{true}? A ;'"),
+        ("s : x=A ;", 2, "syntax error at '=A ;'"),
+        ("s : A ;\nimport Other;", 3, "syntax error at 'Other;'"),
+        ("s : A\nt : B ;", 3, "syntax error at ': B ;'"),
+        ("s : A ;;", 2, "syntax error at ';'"),
+        ("s : A ;\nmode INSIDE;", 3, "syntax error at 'INSIDE;'"),
+        ("s : 'a ;", 2, 'syntax error at "\'a ;"'),
+        ("s : A ;\nC : [] ;", 3, "syntax error at '[] ;'"),
+        ("s : A ;\nC : '\\uXY12' ;", 3, "syntax error at"),
+        ("s : A ;\nC : '\\u{1F916}' ;", 3, "syntax error at"),
+        ("s : A ;\nC : [\\p{Lu}] ;", 3, "syntax error at"),
         ("s : A ;\n\nC : 'x' .*? 'y' ;", 4, "rule C: non-greedy '*?' is not supported"),
         ("s : A ;\nC : ~('x' | 'yz') ;", 3, "rule C: only a set of characters can be negated"),
         ("s : A ;\nC : 'ab'..'c' ;", 3, "rule C: 'ab'..'c' is no range of characters"),
@@ -322,14 +322,13 @@ def test_what_is_not_of_our_style_is_refused(rules: str, line: int, message: str
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "bad.g4:1: not a grammar of our style: unexpected end"),
-        ("grammar Bad;\ns : A\n", "bad.g4:2: not a grammar of our style: unexpected end"),
-        ("s : A ;", "bad.g4:1: not a grammar of our style: unexpected 's : A ;'"),
+        ("", "bad.g4:1: syntax error at end"),
+        ("grammar Bad;\ns : A\n", "bad.g4:2: syntax error at end"),
+        ("s : A ;", "bad.g4:1: syntax error at 's : A ;'"),
         (f"grammar Bad;\n{TOKENS}", "bad.g4:1: no parser rule"),
         (
             "grammar Bad;\r\ns : {x} ;\r\n",
-            "bad.g4:2: not a grammar of our style: unexpected '{x} ;'; "
-            "not understood: an action (line 2)",
+            "bad.g4:2: syntax error at '{x} ;'; not supported: an action (line 2)",
         ),
     ],
 )
@@ -338,6 +337,24 @@ def test_what_is_no_grammar_is_refused(text: str, message: str) -> None:
     with pytest.raises(GrammarError) as raised:
         read(text, source="bad.g4")
     assert message == str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("rules", "message"),
+    [
+        ("s\n    : (A? B?)* EOF ;", "3: rule s: (A? B?)* repeats what may be empty"),
+        ("s : t+ EOF ;\nt : A* ;", "2: rule s: t+ repeats what may be empty"),
+        ("s : A EOF ;\nC : 'a' ;", "4: token A is never read: C has the same text"),
+        ("t : A ;", "2: no rule reads EOF, so no file can be read to its end"),
+    ],
+)
+def test_what_nobody_writes_on_purpose(rules: str, message: str, tmp_path: Path) -> None:
+    """In a file it is refused with its line, as in ANTLR or where that only warns."""
+    file = tmp_path / "bad.g4"
+    file.write_text(f"grammar Bad;\n{rules}\nA : 'a' ;\nB : 'b' ;\n", encoding="utf-8")
+    with pytest.raises(GrammarError) as raised:
+        read_file(file)
+    assert f"{file}:{message}" == str(raised.value)
 
 
 def test_recursion_that_is_not_left() -> None:
@@ -361,10 +378,9 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 def test_line_ends_of_a_file_are_kept(tmp_path: Path) -> None:
     """A grammar file with CRLF is printed with CRLF."""
     path = tmp_path / "windows.g4"
-    path.write_bytes(SMALL.replace("\n", "\r\n").encode())
-    grammar = read_file(path)
-    assert path.read_bytes() == grammar.text.encode()
-    assert read(SMALL).rules == grammar.rules
+    text = GRAMMAR.read_text(encoding="utf-8")
+    path.write_bytes(text.replace("\n", "\r\n").encode())
+    assert path.read_bytes() == read_file(path).text.encode()
 
 
 @given(st.data())

@@ -7,10 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from grammar.notation.edits import AddAlternative, AddRule, AddToken, Edit, apply
+from grammar.notation.krl_grammar import krl_grammar
 from grammar.notation.model import Grammar
+from grammar.parser.recognizer import Recognizer
 from grammar.syntax import ast
-from grammar.syntax.build import BLOCK_RULES, SyntaxFailure, builder, read_module
-from grammar.syntax.node_plans import MAX_DEPTH
+from grammar.syntax.build import BLOCK_RULES, Builder, SyntaxFailure, builder, read_module
+from grammar.syntax.node_plans import MAX_DEPTH, NoNode
 from grammar.syntax.statement_rules import RULES
 from grammar.syntax.unparse import expression
 from grammar.syntax.walk import children, walk
@@ -447,6 +450,29 @@ def test_what_is_far_too_deep_fails_where_it_gets_so() -> None:
     (failure,) = failures_of("DEF A()\nX=" + "(" * 3_000 + "1" + ")" * 3_000 + "\nEND\n")
     assert MAX_DEPTH < failure.column < 2_000
     assert "(" == failure.text
+
+
+@pytest.mark.parametrize(
+    ("edits", "line", "rule"),
+    [
+        ([AddAlternative("simpleStatement", "DWELL caseValue")], "DWELL 1", "simpleStatement"),
+        ([AddAlternative("simpleStatement", "DWELL")], "DWELL", "simpleStatement"),
+        ([AddAlternative("goto", "DWELL sum sum")], "DWELL 1 2", "goto"),
+        (
+            [
+                AddRule("halt", "dwell\n    : DWELL eol statement* ENDLOOP\n    ;"),
+                AddAlternative("statement", "dwell eol"),
+            ],
+            "DWELL\nHALT\nENDLOOP",
+            "dwell",
+        ),
+    ],
+)
+def test_what_has_no_node_is_named(edits: list[Edit], line: str, rule: str) -> None:
+    """A construct is in the grammar before its node is here: the rule and what to do are said."""
+    wider = apply(krl_grammar(), [AddToken("DWELL"), *edits])
+    with pytest.raises(NoNode, match=f"no node for a form of {rule} .*CONTRIBUTING.*step 6"):
+        Builder(Recognizer(wider)).read(f"DEF A()\n{line}\nEND\n")
 
 
 def test_what_is_below_the_limit_is_built() -> None:

@@ -24,7 +24,7 @@ from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar, Reference
 from grammar.parser.recognizer import Recognizer
 from recovery.induction import folding, list_lengths, rounds
-from recovery.induction.corpus_lines import held_out
+from recovery.induction.corpus_lines import drawn_origins, held_out
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.induced_ledger import InducedLedger, without
 from recovery.induction.names_rule import with_names
@@ -489,6 +489,20 @@ def test_a_bound_can_be_struck_out(
     assert accepted == Recognizer(again.grammar).accepts("LINK A, B, C, D\n")
 
 
+def test_a_growth_goes_on_where_it_stopped(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After any round it ends as an uninterrupted one: what lists are bounded tells its start."""
+    monkeypatch.setattr(list_lengths, "SHORT_LIST_EXAMPLES", 1)
+    text = "LINK A{0}\nLINK A{0}, B{0}\nLINK A{0}, B{0}, C{0}\n"
+    files = [CorpusFile(f"{o}/a.toy", text.format(o), frozenset({o})) for o in "ABC"]
+    whole = Induction(toy, files, (), NegativeSet(()))
+    for most in range(1, len([*whole.rounds()])):
+        begun = Induction(toy, files, (), NegativeSet(()))
+        assert most == len([*begun.rounds(most)])
+        resumed = Induction(begun.grammar, files, (), NegativeSet(()), start=toy)
+        assert [*resumed.rounds()]
+        assert whole.grammar.text == resumed.grammar.text
+
+
 def test_lists_are_bounded_in_a_round_of_their_own(
     toy: Grammar, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -507,9 +521,10 @@ def test_lists_are_bounded_in_a_round_of_their_own(
 
 def test_origins_are_held_out_whole(toy_files: tuple[CorpusFile, ...]) -> None:
     """A fraction of the origins is held out, with all of their files, the same for a seed."""
-    shown, held, origins = held_out(toy_files, 1 / 3, 4)
+    origins = drawn_origins(toy_files, 1 / 3, 4)
+    shown, held = held_out(toy_files, origins)
     assert (2, 4, 1) == (len(held), len(shown), len(origins))
-    assert held_out(toy_files, 1 / 3, 4) == (shown, held, origins)
+    assert origins == drawn_origins(toy_files, 1 / 3, 4)
     assert {frozenset(origins)} == {file.origins for file in held}
 
 
