@@ -81,6 +81,12 @@ def test_the_verdict_aims_higher_where_95_per_cent_parse_already() -> None:
     assert _view(record).section.verdict == "Mend the first cluster and every file parses."
 
 
+def test_the_seconds_are_those_of_the_survey() -> None:
+    """Causes are searched after it, which may take far longer."""
+    (*_, last) = _view({"seconds": 3.3, "bytes": 6_600}).figures
+    assert ("seconds to survey", "3.3", "2.00 kB/s") == (last.label, last.value, last.note)
+
+
 def test_each_repair_step_says_what_it_adds(survey_record: RecordBuilder) -> None:
     """The gain counts from the step before, the first one from today."""
     record = survey_record("believable")
