@@ -290,6 +290,11 @@ class System:
         return PredefinedParameter(name, self._typed(type_name, sizes), mode == "OUT")
 
 
+def is_priority(number: float) -> bool:
+    """Return whether a program may give this number to an interrupt or trigger [INT-02, TRG-06]."""
+    return number in (1, 2) or 4 <= number <= 39 or 81 <= number <= 128
+
+
 _SIDES: Mapping[str, Literal["inputs", "outputs", "unconnected"]] = {
     "IN": "inputs",
     "OUT": "outputs",

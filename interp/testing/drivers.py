@@ -92,11 +92,11 @@ def _routine(head: str, lines: Sequence[str], end: str = "END") -> str:
 
 
 def _driver(program: CheckedProgram, driver: Driver) -> str:
-    for statement in driver.statements:
-        _read(statement)
+    for statements in driver.statements:
+        _read(statements)
     call = driver.call if "(" in driver.call else f"{driver.call}()"
-    node = _read(call)
-    if not isinstance(node, ast.CallStatement):
+    node, *more = _read(call)
+    if more or not isinstance(node, ast.CallStatement):
         raise DriverError(f"{driver.call!r} is no call of a routine")
     name = node.call.name
     routine = _seen(program, name.key)
@@ -122,14 +122,14 @@ def _is_seen(program: CheckedProgram, routine: Routine) -> bool:
     return routine.node.is_global or program.routines_of(routine.unit)[0] is routine
 
 
-def _read(statement: str) -> ast.Statement:
-    """Parse a line that must be a single statement."""
-    read = read_module(f"DEF X()\n{statement}\nEND\n")
+def _read(text: str) -> Sequence[ast.Statement]:
+    """Parse a text that must contain at least one statement, and only statements."""
+    read = read_module(f"DEF X()\n{text}\nEND\n")
     if isinstance(read, ast.Module) and isinstance(read.content, ast.Program):
         (routine, *more) = read.content.routines
-        if not more and len(routine.body) == 1:
-            return routine.body[0]
-    raise DriverError(f"{statement!r} is no statement of KRL")
+        if not more and routine.body:
+            return routine.body
+    raise DriverError(f"{text!r} is no statement of KRL")
 
 
 def _text(routine: Routine, node: ast.Node) -> str:
@@ -164,8 +164,8 @@ def _head_end(routine: Routine) -> int:
 
 def _stand_in(routine: Routine, own: str, bodies: Sequence[Sequence[str]], counter: str) -> str:
     """Return a routine with the parameters and declarations of another one, and new statements."""
-    for statement in (one for body in bodies for one in body):
-        _read(statement)
+    for statements in (one for body in bodies for one in body):
+        _read(statements)
     node, text = routine.node, routine.unit.source.text
     parameters = text[node.name.span[1] : _head_end(routine)]
     kind = "DEF" if node.result is None else f"DEFFCT {_text(routine, node.result)}"

@@ -148,10 +148,19 @@ class Context:
 
     @cached_property
     def open_uses(self) -> Mapping[tuple[Space | None, str], Sequence[Use]]:
-        """The uses without a declaration, by space and name in upper case."""
+        """The uses without a declaration, by space and name in upper case.
+
+        A data list cannot assign to whole variables, declared or not.
+        """
+        misplaced = {
+            item.target.name
+            for item in (self.data.items if self.data else ())
+            if isinstance(item, ast.Assignment) and isinstance(item.target, ast.Variable)
+        }
         found: dict[tuple[Space | None, str], list[Use]] = {}
         for use in self.resolution.open_uses:
-            found.setdefault((use.space, use.name.key), []).append(use)
+            if use.name not in misplaced:
+                found.setdefault((use.space, use.name.key), []).append(use)
         return found
 
     @cached_property

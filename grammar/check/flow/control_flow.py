@@ -186,9 +186,16 @@ def _end(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     ways = flow_graph(routine.node, lambda switch: _is_exhaustive(context, switch))
     if ways.end in ways.reached():
         name = routine.node.name
-        message = f"{name.text} can reach ENDFCT without RETURN, and has no result then"
-        # The controller accepts it, and files that it is delivered with have it.
-        yield context.finding("return-missing", name, message, severity="note")
+        executed = (one.statement for one in routine.statements)
+        kinds = {type(one) for one in executed if not isinstance(one, ast.Definition)}
+        # The controller accepts it, and files that it is delivered with have it. A function without
+        # any statement only says what it is called with.
+        if not kinds or ast.Return in kinds or "RETURN" in (context.module.words or ()):
+            message = f"{name.text} can reach ENDFCT without RETURN, and has no result then"
+            yield context.finding("return-missing", name, message)
+        else:
+            message = f"{name.text} has no RETURN, so it never has a result"
+            yield context.finding("return-missing", name, message, severity="warning")
 
 
 def _is_exhaustive(context: Context, switch: ast.Switch) -> bool:

@@ -17,6 +17,8 @@ from grammar.check.analysis.context import Context
 from grammar.check.flow.routine_summaries import Summaries, SummaryCollector
 from grammar.check.flow.routine_summaries import of_project as of_summaries
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
+from grammar.diagnostics.did_you_mean import did_you_mean
+from grammar.semantics.predefined import is_priority
 from grammar.semantics.scopes import REST
 from grammar.semantics.symbols import Access, SignalSymbol
 from grammar.syntax import ast
@@ -39,13 +41,16 @@ class Effects:
     """Effects of the routines of a file on which others may depend.
 
     ``changed`` are the names that are assigned or passed on, with a constant index as in
-    ``$FLAG[3]``; ``reset`` those that may become FALSE. ``switched_on`` has interrupt numbers, and
-    ``""`` for all or unknown ones. ``valueless`` are variables without an initial value,
+    ``$FLAG[3]``; ``reset`` those that may become FALSE. ``declared`` and ``switched_on`` have
+    interrupt numbers, and ``""`` for all or unknown ones; ``switches`` are the places that switch a
+    number on, off or otherwise. ``valueless`` are variables without an initial value,
     ``summaries`` those of its routines.
     """
 
     interrupts: tuple[Place, ...] = ()
+    declared: frozenset[str] = frozenset()
     switched_on: frozenset[str] = frozenset()
+    switches: tuple[Place, ...] = ()
     outputs: tuple[Place, ...] = ()
     reset: frozenset[str] = frozenset()
     waits: tuple[tuple[Place, frozenset[str]], ...] = ()
@@ -80,8 +85,8 @@ def effects_of_unread(words: frozenset[str]) -> Effects:
     """Return the possible effects of unreadable text with these words; `REST` can do anything."""
     if REST in words:
         words |= {"INTERRUPT"} | _PROGRAMS_OWN
-    switched_on = frozenset({""} if "INTERRUPT" in words else ())
-    return Effects(switched_on=switched_on, reset=words, changed=words)
+    any_ = frozenset({""} if "INTERRUPT" in words else ())
+    return Effects(declared=any_, switched_on=any_, reset=words, changed=words)
 
 
 class _Collector:
@@ -91,7 +96,9 @@ class _Collector:
         self._context = context
         unread = effects_of_unread(context.module.words or frozenset())
         self._interrupts: list[Place] = []
+        self._declared = set(unread.declared)
         self._on = set(unread.switched_on)
+        self._switches: list[Place] = []
         self._outputs: dict[str, Place] = {}
         self._reset = set(unread.reset)
         self._waits: list[tuple[Place, frozenset[str]]] = []
@@ -111,7 +118,9 @@ class _Collector:
         valueless = tuple(self._valueless())
         return Effects(
             tuple(self._interrupts),
+            frozenset(self._declared),
             frozenset(self._on),
+            tuple(self._switches),
             tuple(self._outputs.values()),
             frozenset(self._reset),
             tuple(self._waits),
@@ -157,6 +166,7 @@ class _Collector:
     def interrupt(self, node: ast.InterruptDeclaration) -> None:
         """Record an interrupt with its possible number, and the effects of its action."""
         known = integer_of(self._context, node.number)
+        self._declared.add(_number(known))
         if known is not None and 1 <= known <= 128:  # others are reported there
             self._interrupts.append(self._place(node.number, str(known)))
         self._later(node)
@@ -166,10 +176,12 @@ class _Collector:
         self._later(node)
 
     def switch(self, node: ast.InterruptSwitch) -> None:
-        """Which interrupts are switched on."""
+        """Which interrupts are switched, and which of them on."""
+        known = None if node.number is None else integer_of(self._context, node.number)
         if node.action in ("ON", "ENABLE"):
-            known = None if node.number is None else integer_of(self._context, node.number)
-            self._on.add("" if known is None else str(known))
+            self._on.add(_number(known))
+        if node.number is not None and known is not None and is_priority(known):
+            self._switches.append(self._place(node.number, str(known)))
 
     def loop(self, node: ast.For) -> None:
         """FOR changes its counter."""
@@ -278,6 +290,11 @@ class _Collector:
         self._summaries.call(node)
 
 
+def _number(known: int | None) -> str:
+    """Return the number of an interrupt as `Effects` has it."""
+    return "" if known is None else str(known)
+
+
 def _written_key(node: ast.Expression) -> str:
     """Return the output or flag that a signal denotes."""
     match node:
@@ -309,14 +326,19 @@ def of_project(
 ) -> Iterator[Diagnostic]:
     """Yield the findings that depend on several files; ``names`` returns those of each file."""
     files = list(found)
+    declared = frozenset[str]().union(*(one.declared for one in files))
     switched_on = frozenset[str]().union(*(one.switched_on for one in files))
+    switches = [place for one in files for place in one.switches]
+    undeclared = [] if "" in declared else list(_undeclared(switches, declared, switched_on))
+    yield from undeclared
+    meant = {name for one in undeclared if one.fix for name in one.fix.names}
     reset = frozenset[str]().union(*(one.reset for one in files))
     changed = frozenset[str]().union(*(one.changed for one in files))
     yield from of_summaries([one.summaries for one in files if one.summaries])
     yield from _never_assigned([place for one in files for place in one.valueless], changed, names)
     for one in files:
         if "" not in switched_on:
-            yield from _never_on(one.interrupts, switched_on)
+            yield from _never_on(one.interrupts, switched_on | meant)
         if "$OUT" not in reset:
             yield from _never_reset(one.outputs, reset)
         for place, keys in one.waits:
@@ -338,6 +360,18 @@ def _never_assigned(
         if key in program and key not in changed:
             message = f"{place.what} has no value, and nothing assigns to it"
             yield diagnose("never-assigned", place.path, place.region, message)
+
+
+def _undeclared(
+    switches: Iterable[Place], declared: Set[str], switched_on: Set[str]
+) -> Iterator[Diagnostic]:
+    """Yield the switched interrupts that nothing declares; meant is one that stays off, if any."""
+    for place in switches:
+        if place.what not in declared:
+            message = f"no INTERRUPT DECL has the number {place.what}"
+            fix = did_you_mean(place.what, sorted(declared - switched_on))
+            fix = fix or did_you_mean(place.what, sorted(declared))
+            yield diagnose("interrupt-undeclared", place.path, place.region, message, fix=fix)
 
 
 def _never_on(declared: Iterable[Place], switched_on: frozenset[str]) -> Iterator[Diagnostic]:

@@ -15,6 +15,7 @@ from grammar.check.analysis.control_flow_graph import FlowNode
 from grammar.check.flow.advance_stop_reasons import is_known_call
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.scopes import REST
 from grammar.semantics.symbols import Access
 from grammar.syntax import ast
 from grammar.syntax.references import calls_in
@@ -59,7 +60,7 @@ def _is_called_outside(context: Context, key: str) -> bool:
 def _is_called_at_hand(context: Context, key: str) -> bool:
     """Return whether another module of the project calls a routine or cannot be read."""
     return any(
-        module.table is None or key in module.table.calls
+        module.table is None or key in module.table.calls or key in (module.words or ())
         for module in context.project.modules
         if module.path != context.module.path
     )
@@ -71,12 +72,15 @@ def _is_program(routine: RoutineBody) -> bool:
 
 
 class _Entered:
-    """The call graph of a module, and the routines that its interrupts call."""
+    """The call graph of a module, and the routines that its interrupts call.
+
+    Unreadable lines may be declarations of interrupts.
+    """
 
     def __init__(self, context: Context) -> None:
         self._context = context
         self._callers: dict[str, set[str]] = {}
-        self._targets: set[str] = set()
+        self._targets = set(context.module.words or ())
         for routine in context.routines:
             for called in calls_in(routine.node.body):
                 self._callers.setdefault(called, set()).add(routine.node.name.key)
@@ -104,7 +108,7 @@ class _Entered:
         todo = list(found)
         while todo:
             key = todo.pop()
-            if key in self._targets or (
+            if not self._targets.isdisjoint((key, REST)) or (
                 key in self._seen_outside and is_called(self._context, key)
             ):
                 return True

@@ -11,6 +11,7 @@ from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.context import Context, RoutineBody
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.motion_kinds import WITHOUT_PATH
+from grammar.semantics.predefined import is_priority
 from grammar.semantics.symbols import Access
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
@@ -18,11 +19,6 @@ from grammar.syntax.walk import root_variable, walk
 #: Milliseconds or millimetres: how far a trigger can be shifted [TRG-03, TRG-04].
 _FARTHEST = 10_000_000
 _STOP_MESSAGE = "$STOPMESS"
-
-
-def is_priority(number: float) -> bool:
-    """Return whether a program may give this number to an interrupt or trigger [INT-02, TRG-06]."""
-    return number in (1, 2) or 4 <= number <= 39 or 81 <= number <= 128
 
 
 def check(context: Context) -> Iterator[Diagnostic]:

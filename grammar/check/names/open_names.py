@@ -12,7 +12,7 @@ from functools import cache, cached_property
 from grammar.check.analysis.context import Context
 from grammar.check.names.likely_names import LikelyNames
 from grammar.check.names.misspelt_declarations import slips_in_file, unused
-from grammar.check.names.unresolved_name import UnresolvedName, declaration_of
+from grammar.check.names.unresolved_name import UnresolvedName, declaration_of, home_of
 from grammar.diagnostics.diagnostic import Region
 from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.link import SHARED
@@ -86,7 +86,7 @@ def _declarable(context: Context) -> Iterator[UnresolvedName]:
         if space is None or space is Space.LABEL or (space is Space.VALUE and key in slips):
             continue
         uses = list(filter(_may_be_elsewhere, some))
-        if not uses:
+        if not uses or home_of(context, space, key):
             continue
         first = uses[0]
         near, instead = likely.of(first), swapped.of(first)

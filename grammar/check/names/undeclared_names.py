@@ -11,12 +11,13 @@ from collections.abc import Iterator
 from grammar.check.analysis.context import Context
 from grammar.check.names.likely_names import system_typos
 from grammar.check.names.misspelt_declarations import slips_in_file
-from grammar.check.names.unresolved_name import SLUGS, WORDS, declaration_of
+from grammar.check.names.unresolved_name import SLUGS, WORDS, declaration_of, home_of
+from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.diagnostics.did_you_mean import one_of
 from grammar.semantics.link import Project
 from grammar.semantics.resolve import Resolution, Use
-from grammar.semantics.scopes import Found, Module, NotFound, Undetermined
+from grammar.semantics.scopes import Found, Module, NotFound, Reason, Undetermined
 from grammar.semantics.symbols import Access, Kind
 from grammar.semantics.types import SCALARS
 from grammar.syntax.ast import Span
@@ -29,6 +30,9 @@ def check(context: Context) -> Iterator[Diagnostic]:
     yield from slips.values()
     for (space, key), some in context.open_uses.items():
         if space is None or space is Space.LABEL or (space is Space.VALUE and key in slips):
+            continue
+        if home := home_of(context, space, key):
+            yield _local_type(context, some[0], home)
             continue
         unknown = next((use for use in some if isinstance(use.answer, NotFound)), None)
         if unknown is not None:
@@ -46,9 +50,17 @@ def lacks_data_list(project: Project, module: Module, resolution: Resolution) ->
     return any(
         use.space is Space.VALUE
         and isinstance(use.answer, Undetermined)
+        and use.answer.reason is Reason.MODULES_MISSING
         and not use.name.text.startswith("$")
         for use in resolution.open_uses
     )
+
+
+def _local_type(context: Context, use: Use, home: str) -> Diagnostic:
+    message = f"the type {use.name.text} is local to {home}"
+    reason = "declare it in the data list, where all routines see it"
+    severity: Severity = "error" if isinstance(use.answer, NotFound) else "warning"
+    return context.finding("unknown-type", use.name, message, reason=reason, severity=severity)
 
 
 def _unknown(context: Context, space: Space, use: Use) -> Diagnostic:

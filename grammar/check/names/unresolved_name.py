@@ -87,6 +87,14 @@ def declaration_of(context: Context, space: Space, name: str) -> Declared | None
     return Declared(found.module.path, space, found.symbol.key)
 
 
+def home_of(context: Context, space: Space | None, key: str) -> str:
+    """Return the routine of the file to which a type is local; empty if there is none."""
+    if space is not Space.TYPE:
+        return ""
+    homes = (one.node.name.text for one in context.routines if one.table.table.find(space, key))
+    return next(homes, "")
+
+
 @dataclass(frozen=True, slots=True)
 class UnresolvedName:
     """A name that a file uses and that a missing file may declare.

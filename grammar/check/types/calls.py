@@ -15,7 +15,7 @@ from grammar.semantics.assignability import misfit, passable
 from grammar.semantics.package_scope import PackageScope
 from grammar.semantics.scopes import Found, Scope, SystemScope
 from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
-from grammar.semantics.types import UNKNOWN, Type, Verdict
+from grammar.semantics.types import UNKNOWN, Array, Type, Verdict
 from grammar.syntax import ast
 
 
@@ -131,7 +131,10 @@ def _check(
         return replace(verdict, reason=misfit(to, value, where))
 
     checker.check(wanted, argument, accepts, "wrong-argument", is_unconfirmed=is_uncertain)
-    if is_out and not is_variable and checker.context.types[argument] != UNKNOWN:
+    # arrays are passed :OUT only [SCO-07], so texts have no other way
+    is_text = isinstance(argument, ast.StringLiteral) and isinstance(wanted, Array)
+    is_known = checker.context.types[argument] != UNKNOWN
+    if is_out and is_known and not is_variable and not is_text:
         message = f"the parameter {parameter.name} is :OUT, so it needs a variable here"
         checker.report("nothing-to-change", argument, message)
 

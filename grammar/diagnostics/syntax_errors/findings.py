@@ -22,6 +22,7 @@ _FARTHEST = 20_000
 _MISTAKES: tuple[Callable[[ErrorSite], Mistake | None], ...] = (
     blocks.unbalanced_block,
     words.fold_without_semicolon,
+    words.foreign_letter,
     words.foreign_word,
     corrections.misspelt_keyword,
     corrections.repeated_token,

@@ -14,7 +14,7 @@ _FEW = 12
 _ENDS_VALUE = re.compile(r"[\w\])]$")
 _BEGINS_VALUE = re.compile(r"[\w$#]")
 #: Words between the parts of a statement.
-_JOINING = ("WHEN", "TO", "DO", "THEN")
+_JOINING = ("WHEN", "DELAY", "TO", "DO", "THEN")
 
 
 def unexpected(site: ErrorSite) -> Mistake:

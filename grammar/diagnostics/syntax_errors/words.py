@@ -76,3 +76,12 @@ def prose(site: ErrorSite) -> Mistake | None:
         return None
     fix = Fix("write ; ahead of it if it is one")
     return Mistake("a comment begins with a semicolon", fix, region=site.region(0))
+
+
+def foreign_letter(site: ErrorSite) -> Mistake | None:
+    """Return the mistake of a letter that no name has, unless the line is prose."""
+    letter = site.failure.text[:1]
+    if letter.isascii() or not letter.isalpha():
+        return None
+    reason = "names consist of the letters A to Z, digits, _ and $"
+    return prose(site) or Mistake(f"{letter} is not allowed in a name", reason=reason)

@@ -198,6 +198,8 @@ def test_the_token_that_mends_a_line_is_reported(wrong: str, message: str, right
         ("CASE", "a value is missing behind CASE"),
         ("INT", "a name is missing behind INT"),
         ("N = A B", "an operator is missing between A and B"),
+        ("TRIGGER WHEN DISTANCE=0 DO $OUT[1]=TRUE", "DELAY is missing before DO"),
+        ("TRIGGER WHEN PATH=-5 DO WORK() PRIO=5", "DELAY is missing before DO"),
         ("FOR N = 1 10", "TO is missing before 10"),
         ("WAIT SEC 0,5", "a number has a decimal point and no comma"),
         ("HALT 5", "5 is too much on this line"),
@@ -207,6 +209,21 @@ def test_what_is_missing_is_named(line: str, message: str) -> None:
     """What a statement needs is said in words of the robot, and not as a list of tokens."""
     text = f"SWITCH N\n{line}\nENDSWITCH" if line == "CASE" else line
     assert message == findings(f"DEF A()\nINT N\n{text}\nEND\n")[0].message
+
+
+@pytest.mark.parametrize(
+    ("line", "column"),
+    [("INT zähler", 6), ("Ärger = 1", 1), ("größe(1)", 3), ("N = Maß + 1", 7), ("DEF größe()", 7)],
+)
+def test_a_letter_that_no_name_has(line: str, column: int) -> None:
+    """A letter outside A to Z is told; a line of words is rather a comment."""
+    found = findings(f"DEF A()\nEND\n{line}\nEND\n" if "DEF" in line else f"DEF A()\n{line}\nEND")
+    letter = line[column - 1]
+    assert (f"{letter} is not allowed in a name", column) == (
+        found[0].message,
+        found[0].region.column,
+    )
+    assert "a comment begins with a semicolon" == only("Den Greifer öffnen").message
 
 
 @pytest.mark.parametrize(("wrong", "right"), [("ED", "END"), ("EDN", "END"), ("NED", "END")])

@@ -88,6 +88,8 @@ def test_stand_ins_replace_routines_call_by_call(run: Run) -> None:
         "[[test]]\nname = 'first'\ncall = 'measure(3)'\nexpect = ['result 7.5']\n"
         "[[test]]\nname = 'in a program'\ncall = 'work(1)'\nbefore = ['count = measure(1)',"
         " 'count = measure(400)']\nexpect = ['value count 403', 'out 2 TRUE']\n"
+        "[[test]]\nname = 'lines'\ncall = 'work(1)'\nbefore = '''\ncount = measure(1)\n\n"
+        "count = measure(400)\n'''\nexpect = ['value count 403', 'out 2 TRUE']\n"
     )
     assert [] == [name for name, one in outcomes.items() if one.failures]
 

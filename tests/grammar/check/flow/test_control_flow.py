@@ -113,18 +113,25 @@ def test_function_that_ends_with_return(agrees: Agrees, lines: tuple[str, ...]) 
     "lines",
     [
         (),
+        ("DECL INT I",),
         ("IF $IN[1] THEN", "RETURN 1", "ENDIF"),
-        ("LOOP", "EXIT", "ENDLOOP"),
+        ("LOOP", "IF $IN[1] THEN", "RETURN 1", "ENDIF", "EXIT", "ENDLOOP"),
         ("WHILE $IN[1]", "RETURN 1", "ENDWHILE"),
         ("FOR $ACT_TOOL = 1 TO 2", "RETURN 1", "ENDFOR"),
         ("SWITCH $ACT_TOOL", "CASE 1", "RETURN 1", "ENDSWITCH"),
         ("SWITCH $ORI_TYPE", "CASE #VAR", "RETURN 1", "ENDSWITCH"),
-        ("GOTO LAST", "LAST:"),
+        ("IF $IN[1] THEN", "RETURN 1", "ENDIF", "GOTO LAST", "LAST:"),
     ],
 )
 def test_function_that_can_end_without_return(agrees: Agrees, lines: tuple[str, ...]) -> None:
     """A way to ENDFCT is told as a note, for controllers accept it [CTL-09]."""
     agrees(function(*lines, mark=" ;> KRL306-"))
+
+
+@pytest.mark.parametrize("lines", [("LOOP", "EXIT", "ENDLOOP"), ("GOTO LAST", "LAST:")])
+def test_function_without_any_return(agrees: Agrees, lines: tuple[str, ...]) -> None:
+    """A function that nowhere has a RETURN never has a result, which is a warning [CTL-09]."""
+    agrees(function(*lines, mark=" ;> KRL306?"))
 
 
 def test_what_is_never_reached_is_reported_once(agrees: Agrees) -> None:

@@ -9,6 +9,7 @@ from grammar.check.project.batch import CheckOptions, check_paths
 from grammar.diagnostics.diagnostic import Diagnostic
 
 Agrees = Callable[..., None]
+Finds = Callable[..., list[Diagnostic]]
 
 
 def routine(*lines: str) -> str:
@@ -174,6 +175,33 @@ def test_interrupts_of_a_project(agrees: Agrees, switch: str) -> None:
     other = f"DEF OTHER()\n{switch}\nEND\n"
     data = "DEFDAT OTHER\nDECL INT N=10\nENDDAT\n"
     agrees({"NEG.src": INTERRUPTS.format(mark=""), "OTHER.src": other, "OTHER.dat": data})
+
+
+@pytest.mark.parametrize(
+    ("switch", "fix"),
+    [
+        ("INTERRUPT ON 12", "did you mean 10?"),  # 11 is on
+        ("INTERRUPT OFF 34", None),
+        ("INTERRUPT DISABLE 34", None),
+    ],
+)
+def test_an_interrupt_that_nothing_declares(finds: Finds, switch: str, fix: str | None) -> None:
+    """The number is told where it is switched, with a declared one that is near and never on."""
+    files = {"NEG.src": INTERRUPTS.format(mark=""), "OTHER.src": f"DEF OTHER()\n{switch}\nEND\n"}
+    found = [one for one in finds(files) if one.path == "OTHER.src"]
+    assert [("KRL517", "warning", 2, fix)] == [
+        (one.code, one.severity, one.region.line, one.fix and one.fix.text) for one in found
+    ]
+    never_on = [one.code for one in finds(files)].count("KRL516")
+    assert (0 if fix else 1) == never_on
+
+
+@pytest.mark.parametrize("declared", ["12", "N"])
+def test_an_interrupt_that_may_be_declared(agrees: Agrees, declared: str) -> None:
+    """Any file may declare it, by its number or by a variable; the system has its own numbers."""
+    other = "DEF OTHER()\nINTERRUPT ON 12\nINTERRUPT OFF 3\nEND\n"
+    third = f"DEF THIRD(N)\nINT N\nINTERRUPT DECL {declared} WHEN $IN[1] DO OTHER()\nEND\n"
+    agrees({"OTHER.src": other, "THIRD.src": third})
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
+from grammar.check.project.project_check import CheckOptions, Content, found_in_project, recheck
+
 Agrees = Callable[..., None]
 
 WORK = """DEF WORK()
@@ -57,6 +59,25 @@ def test_an_interrupt_of_another_module_may_call(agrees: Agrees) -> None:
         }
     )
     agrees({"NEG.src": "DEF NEG()\nEND\n", "WORK.src": MARKED})
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"neg.src": "DEF NEG()\n{}END\n" + PLAIN},
+        {"neg.src": "DEF NEG()\n{}END\n", "work.src": PLAIN},
+    ],
+)
+def test_a_line_that_cannot_be_read_may_declare_an_interrupt(files: dict[str, str]) -> None:
+    """Its syntax error is the only finding; the routine that it names is not outside interrupts."""
+    for line, codes in (
+        ("INTERRUPT DECL 20 WHEN $IN[6]=TRUE DO WORK()\n", ["KRL001"]),
+        ("INTERRUPT DECL 20 WHEN $IN[6]=TRUE DO PLAY()\n", ["KRL001", "KRL505", "KRL506"]),
+    ):
+        given = [Content(path, "", text.format(line).encode()) for path, text in files.items()]
+        options = CheckOptions(is_complete=True)
+        found = found_in_project(given, recheck(given, options, {}))
+        assert codes == [one.code for one in found if one.severity != "note"]
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from grammar.check.limits.value_limits import is_priority
+from grammar.semantics.predefined import is_priority
 
 Agrees = Callable[..., None]
 

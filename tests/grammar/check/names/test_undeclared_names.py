@@ -44,6 +44,23 @@ END"""
     agrees(files | custom | {"R1/cell.src": cell.format("101")})
 
 
+@pytest.mark.parametrize(("is_complete", "mark"), [(True, ""), (None, "?")])
+def test_a_type_is_local_to_another_routine(
+    agrees: Agrees, is_complete: bool | None, mark: str
+) -> None:
+    """A type that another routine of the file declares cannot be seen here; told where it is."""
+    first = f"DEF NEG()\nDECL POINT_T A ;> KRL103{mark}\nDECL POINT_T B\nEND"
+    other = "DEF WORK()\nSTRUC POINT_T INT X\nDECL POINT_T A\nA.X = 1\nEND"
+    agrees(f"{first}\n{other}", is_complete=is_complete)
+
+
+def test_a_variable_that_a_data_list_sets_whole(agrees: Agrees) -> None:
+    """It is one mistake, whether the variable is declared or not."""
+    data = "DEFDAT CELL\nSPOT={A 1} ;> KSS2039\nDECL INT N\nN=1 ;> KSS2039\nENDDAT\n"
+    for is_complete in (True, None):
+        agrees({"R1/System/$config.dat": CONFIG, "cell.dat": data}, is_complete=is_complete)
+
+
 def test_without_config_only_a_slip_is_reported(agrees: Agrees) -> None:
     """Where $CONFIG is missing a slip is a warning, and any other name is a note."""
     cell = """DEF CELL()
@@ -498,6 +515,14 @@ def found_in(files: dict[str, str]) -> list[tuple[str, int, str]]:
 
 CUT = "DEFDAT $CONFIG\nDECL GLOBAL INT PARTS=0\nDECL GLOBAL IN"
 UNREAD = "DEFDAT CELL PUBLIC )\nDECL GLOBAL INT GRIPPED=0\nENDDAT\n"
+
+
+@pytest.mark.parametrize(("line", "count"), [("J = N", 0), ("J = K", 1)])
+def test_a_line_that_cannot_be_read_does_not_miss_a_data_list(line: str, count: int) -> None:
+    """A name shows that the data list is missing only if no unreadable line may declare it."""
+    contents = [Content("cell.src", "", f"DEF CELL()\nINT J N\n{line}\nEND\n".encode())]
+    found = found_in_project(contents, recheck(contents, CheckOptions(), {}))
+    assert count == [one.code for one in found].count("KRL702")
 
 
 @pytest.mark.parametrize("other", ["J = = #PLCAE\nEND\n", "HALT\n"])

@@ -17,6 +17,10 @@ DEF FILL(TEXT[]:OUT, LIST[]:OUT)
   TEXT[] = "A"
   LIST[1] = 1
 END
+DEF SHOW(TEXT[]:OUT, MARK:OUT)
+  DECL CHAR TEXT[], MARK
+  MARK = TEXT[1]
+END
 DEFFCT INT COUNT(TEXT[]:IN)
   DECL CHAR TEXT[]
   RETURN STRLEN(TEXT[])
@@ -59,6 +63,7 @@ def program(*lines: str) -> str:
         ("TYP-20", "FILL(TEXT, LIST[]) ;> KSS2052"),
         ("TYP-11", "I = COUNT(TEXT[])"),
         ("TYP-11", 'I = COUNT("FIVE")'),
+        ("SCO-07", 'SHOW("FIVE", "F") ;> KRL308-'),
         ("CTL-09", "I = TAKE(I, R) ;> KRL303?"),
         ("CTL-09", "COUNT(TEXT[]) ;> KRL309-"),
         ("FCT-01", "R = SIN(I) + SQRT(2)"),
