@@ -204,9 +204,9 @@ class _TraceWriter:
 
 @contextmanager
 def _tracing(file: Path | None, most: int) -> Iterator[_TraceWriter | None]:
-    """Yield what writes the trace, to a temporary file that is moved to its path once complete.
+    """Yield what writes the trace, to a temporary file that is moved to its path at the end.
 
-    A process that receives SIGTERM leaves no part of it.
+    A process that receives SIGINT or SIGTERM keeps and tells what is traced so far.
     """
     if file is None:
         yield None
@@ -217,8 +217,15 @@ def _tracing(file: Path | None, most: int) -> Iterator[_TraceWriter | None]:
     if is_ours:
         signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     try:
+        ended: KeyboardInterrupt | SystemExit | None = None
         with atomic_path(file) as part, part.open("wb") as stream:
-            yield _TraceWriter(stream, most)
+            try:
+                yield _TraceWriter(stream, most)
+            except (KeyboardInterrupt, SystemExit) as error:
+                ended = error
+        if ended is not None:
+            typer.echo(one_line(f"trace: {file} ends where the run was interrupted"), err=True)
+            raise ended
     finally:
         if is_ours:
             signal.signal(signal.SIGTERM, signal.SIG_DFL)

@@ -645,16 +645,20 @@ def test_syntax_error(run: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has no signals")
-def test_a_run_that_is_ended_leaves_no_part_of_a_trace(tmp_path: Path) -> None:
-    """SIGTERM, as a service or a pipeline sends it."""
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_run_that_is_ended_keeps_its_trace(tmp_path: Path, number: signal.Signals) -> None:
+    """What is traced so far is kept, in whole lines, with Ctrl-C and where a service ends it."""
     file = tmp_path / "main.src"
     file.write_text("DEF MAIN()\nLOOP\nWAIT SEC 0.001\nENDLOOP\nEND\n", encoding="ascii")
     out = tmp_path / "out"
     words = ["run", str(file), "--trace", str(out / "t.jsonl"), "--until", "1000000"]
-    with subprocess.Popen([sys.executable, "-m", "krl", *words], stderr=subprocess.DEVNULL) as run:
+    with subprocess.Popen([sys.executable, "-m", "krl", *words], stderr=subprocess.PIPE) as run:
+        assert run.stderr is not None
         while not out.exists() or not [*out.iterdir()]:
             assert run.poll() is None
             time.sleep(0.05)
-        run.send_signal(signal.SIGTERM)
-        assert 128 + signal.SIGTERM == run.wait(60)
-    assert [] == [*out.iterdir()]
+        run.send_signal(number)
+        assert b"t.jsonl ends where the run was interrupted" in run.stderr.read()
+        assert 128 + number == run.wait(60)
+    assert ["t.jsonl"] == [one.name for one in out.iterdir()]
+    assert all(map(json.loads, (out / "t.jsonl").read_text(encoding="utf-8").splitlines()))
