@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from grammar.notation.edits import Edit
 
@@ -32,11 +33,23 @@ class Cause:
     proposals: tuple[Proposal, ...]
 
 
-#: Returns how many negatives the grammar would accept with the edits.
-NegativeCounter = Callable[[Sequence[Edit]], int]
+#: Edits that compete with others for the same lines.
+Rivals = Collection[tuple[Edit, ...]]
 
 
-def no_negatives(edits: Sequence[Edit]) -> int:
+class NegativeCounter(Protocol):
+    """Counts negatives: programs that must stay rejected."""
+
+    def __call__(self, edits: Sequence[Edit], rivals: Rivals = ()) -> int:
+        """Return how many negatives the grammar would accept with the edits.
+
+        Those that one of the ``rivals`` accepts also count if the edits read the line at which they
+        fail: what leaves a block open accepts no program with it, and is no better for that.
+        """
+        ...
+
+
+def no_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
     """Return 0: the `NegativeCounter` for a survey without negatives."""
-    del edits
+    del edits, rivals
     return 0

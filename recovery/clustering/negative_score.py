@@ -6,7 +6,7 @@ that this text always has. Therefore only a few of thousands of negatives have t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from functools import cache
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, Widen
@@ -21,7 +21,7 @@ from grammar.notation.model import (
     Repeat,
 )
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import NegativeCounter
+from recovery.clustering.cause import NegativeCounter, Rivals
 from recovery.clustering.edit_trial import changed_rules, edited
 from recovery.clustering.joint_trial import DetourReader, Path, rule_of
 from recovery.negatives.generate import generate
@@ -38,21 +38,21 @@ def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> Negativ
     recognizer = Recognizer(grammar)
     rejected = NegativeSet((*negatives, *_generated())).rejected_by(recognizer)
     programs = _Programs(recognizer, rejected)
-    known: dict[tuple[Edit, ...], int] = {}
+    known: dict[tuple[Edit, ...], frozenset[int]] = {}
+    nothing = frozenset[int]()
 
-    def count_negatives(edits: Sequence[Edit]) -> int:
-        key = tuple(edits)
-        if key not in known:
+    def accepted(edits: tuple[Edit, ...]) -> frozenset[int]:
+        if edits not in known:
             try:
-                count = programs.accepted(edits)
+                known[edits] = programs.accepted(edits)
             except GrammarError:
-                count = 0
-            if count is None:
-                wider = edited(recognizer, edits)
-                tokens = wider and required_tokens(edits, grammar, wider.lexer.kind_of)
-                count = len(rejected.accepted(wider, tokens)) if wider and tokens else 0
-            known[key] = count
-        return known[key]
+                known[edits] = nothing
+        return known[edits]
+
+    def count_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
+        own = accepted(tuple(edits))
+        others = nothing.union(*map(accepted, rivals)) - own
+        return len(own) + programs.count_read(edits, others)
 
     return count_negatives
 
@@ -71,8 +71,32 @@ class _Programs:
         self._kinds: dict[frozenset[str], list[tuple[tuple[int, ...], frozenset[int]]]] = {}
         self._having: dict[tuple[frozenset[str], frozenset[int]], dict[int, Path]] = {}
 
-    def accepted(self, edits: Sequence[Edit]) -> int | None:
-        """Return how many negatives the edits accept; ``None`` if they are no detours."""
+    def accepted(self, edits: Sequence[Edit]) -> frozenset[int]:
+        """Return the numbers of the negatives that the edits accept."""
+        found = self._read(edits)
+        if found is not None:
+            return frozenset(number for number, _, failed in found if failed is None)
+        wider = edited(self._recognizer, edits)
+        tokens = wider and required_tokens(edits, self._recognizer.grammar, wider.lexer.kind_of)
+        accepted = set(self._negatives.accepted(wider, tokens)) if wider and tokens else set()
+        every = enumerate(self._negatives.negatives)
+        return frozenset(number for number, negative in every if negative in accepted)
+
+    def count_read(self, edits: Sequence[Edit], among: Set[int]) -> int:
+        """Return how many of some negatives can be read beyond the line at which they fail."""
+        found = (self._read(edits) if among else None) or ()
+        end = self._recognizer.lexer.line_kind
+        return sum(
+            failed is None or end in path.kinds[len(path.states) - 1 : failed]
+            for number, path, failed in found
+            if number in among
+        )
+
+    def _read(self, edits: Sequence[Edit]) -> list[tuple[int, Path, int | None]] | None:
+        """Return the negatives that may be read further, with their path and where they fail.
+
+        That is ``None`` if the edits are no detours.
+        """
         if self._reader.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
             self._reader.recognizer.release()
             self._begin()
@@ -91,7 +115,10 @@ class _Programs:
                     if tokens <= met
                 }
             paths |= self._having[key]
-        return sum(read is None for read in reader.read(detours, paths.values()))
+        failed = reader.read(detours, paths.values())
+        return [
+            (number, path, at) for (number, path), at in zip(paths.items(), failed, strict=True)
+        ]
 
     def _path(self, kinds: tuple[int, ...]) -> Path:
         if kinds not in self._paths:

@@ -270,15 +270,16 @@ class CauseSearch:
         useful.sort(key=lambda co: (-self._worth(*co), str(co[0].edits)))
         clean: list[tuple[Candidate, int]] = []
         costly: list[tuple[Candidate, int]] = []
-        in_rule: Counter[str] = Counter()
+        alike: Counter[object] = Counter()
         scored = 0
         for candidate, _ in useful:
-            rule = getattr(candidate.edits[-1], "rule", "")
-            if in_rule[rule] >= KEPT_PER_RULE:
+            last = candidate.edits[-1]
+            kind = type(last), getattr(last, "rule", "")
+            if alike[kind] >= KEPT_PER_RULE:
                 continue
             negatives = self.count_negatives(candidate.edits)
             scored += 1
-            in_rule[rule] += not negatives
+            alike[kind] += not negatives
             (costly if negatives else clean).append((candidate, negatives))
             if len(clean) == (KEPT if self.is_thorough else KEPT_LIGHT) or scored == (
                 MOST_SCORED if self.is_thorough else MOST_SCORED_LIGHT
@@ -303,11 +304,17 @@ class CauseSearch:
         ]
 
     def _ranked(self, proposals: Sequence[Proposal], lines: Sequence[int]) -> list[Proposal]:
-        """Return the proposals sorted by negatives, then by worth and readable share of files."""
-        worth = {}
+        """Return the proposals sorted by negatives, then by worth and readable share of files.
+
+        Negatives of others with which files can be read further count too; see `NegativeCounter`.
+        """
+        worth, negatives = {}, {}
         alike = self._alike(lines[0])
+        share = {p.edits: self.readable_share(p, lines) for p in proposals}
         for p in proposals:
-            part = LINE_WEIGHT + (1 - LINE_WEIGHT) * self.readable_share(p, lines)
+            further = [edits for edits, other in share.items() if other > share[p.edits]]
+            negatives[p.edits] = self.count_negatives(p.edits, further)
+            part = LINE_WEIGHT + (1 - LINE_WEIGHT) * share[p.edits]
             worth[p.edits] = self._worth(p, p) * part
             if p.mended.issuperset(alike):
                 worth[p.edits] *= ALL_ALIKE_FACTOR
@@ -315,7 +322,7 @@ class CauseSearch:
                 worth[p.edits] *= BREAKS_FILES_FACTOR
             if self.trial.is_ambiguous(p.edits, p.mended):
                 worth[p.edits] *= AMBIGUOUS_FACTOR
-        return sorted(proposals, key=lambda p: (p.accepts_negatives, -worth[p.edits], str(p.edits)))
+        return sorted(proposals, key=lambda p: (negatives[p.edits], -worth[p.edits], str(p.edits)))
 
 
 _T = TypeVar("_T")

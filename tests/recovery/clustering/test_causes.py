@@ -10,7 +10,7 @@ from grammar.notation.edits import Edit
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import Cause, NegativeCounter
+from recovery.clustering.cause import Cause, NegativeCounter, Rivals
 from recovery.clustering.causes import find_causes
 from recovery.clustering.edit_trial import EditTrial
 from recovery.proposals.edit_site import LinePattern
@@ -40,8 +40,8 @@ def lines_of(*texts: str) -> list[LinePattern]:
     return lines
 
 
-def nothing_wrong(edits: Sequence[Edit]) -> int:
-    del edits
+def nothing_wrong(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
+    del edits, rivals
     return 0
 
 
@@ -141,7 +141,8 @@ def test_proposals_differ(all_causes: list[Cause]) -> None:
 def test_what_lets_in_negatives_comes_last(salt: int) -> None:
     """Proposals are ordered by the count of negatives first, and record it."""
 
-    def count_negatives(edits: Sequence[Edit]) -> int:
+    def count_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
+        del rivals
         return zlib.crc32(f"{salt}{edits}".encode()) % 3
 
     for cause in causes([STEPS[:2], LISTS[:2], RETURNS], count_negatives):
@@ -155,7 +156,8 @@ def test_an_edit_that_lets_in_no_negative_is_preferred() -> None:
     (plain,) = causes([LISTS])
     best = plain.proposals[0]
 
-    def count_negatives(edits: Sequence[Edit]) -> int:
+    def count_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
+        del rivals
         return 5 if tuple(edits) == best.edits else 0
 
     (careful,) = causes([LISTS], count_negatives)

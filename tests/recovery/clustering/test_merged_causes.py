@@ -6,7 +6,7 @@ from grammar.notation.edits import AddAlternative, AddToken, Edit, Widen
 from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
+from recovery.clustering.cause import Cause, NegativeCounter, Proposal, Rivals, no_negatives
 from recovery.clustering.causes import merged_by_edits, merged_by_first_word, merged_by_reason
 from recovery.clustering.search import CauseSearch
 from recovery.proposals.edit_site import LinePattern
@@ -102,7 +102,8 @@ def test_lines_that_begin_alike_are_searched_together() -> None:
 def test_causes_stay_apart_where_the_edit_for_both_lets_in_more() -> None:
     """An edit that costs negatives which neither cost is no reason to make two causes one."""
 
-    def count_negatives(edits: Sequence[Edit]) -> int:
+    def count_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
+        del rivals
         return any("'<'" in str(edit) and "'>'" in str(edit) for edit in edits)
 
     searched = search(count_negatives)
