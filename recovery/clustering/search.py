@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Collection, Sequence
+from dataclasses import replace
 from typing import TypeVar
 
 from grammar.notation.edits import AddToken, Edit
@@ -120,7 +121,10 @@ class CauseSearch:
         return 0.0 if wider is None else self.file_trial.readable_share(wider, lines)
 
     def with_entailed(self, cause: Cause) -> Cause:
-        """Return the cause with the lines that only fail because of its own."""
+        """Return the cause with the lines that only fail because of its own.
+
+        The best proposal mends them, too: it is tried on files.
+        """
         best = cause.proposals[0]
         wider = self.trial.wider(best.edits)
         mended = best.mended.intersection(cause.lines)
@@ -128,7 +132,8 @@ class CauseSearch:
         if wider is None or not self.trial.leads_to(best.edits, mended, behind):
             return cause
         more = self.file_trial.entailed(wider, mended, behind)
-        return Cause(tuple(sorted({*cause.lines, *more})), cause.proposals)
+        best = replace(best, mended=best.mended | more)
+        return Cause(tuple(sorted({*cause.lines, *more})), (best, *cause.proposals[1:]))
 
     def _proposals(self, group: Sequence[int], rules: frozenset[str] | None) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))

@@ -8,7 +8,11 @@ import pytest
 
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
+from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import Cluster, Clusters, Member, cluster
+from recovery.clustering.edit_trial import edited
+from recovery.clustering.negative_score import negative_counter
+from recovery.negatives.negatives import Negative
 from recovery.survey.survey import Survey, survey_texts
 from recovery.survey.surveyed_files import SurveyedFile
 from recovery.tuning import MOST_EXAMPLES
@@ -51,6 +55,24 @@ def files(found: Cluster) -> set[str]:
 
 
 # ----------------------------------------------------------------------- causes and no less
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "DEF A()\nLOOP 5\nHALT\nENDLOOP\nEND\n",
+        "DEF A()\nIF A THEN NOW\nHALT\nENDIF\nEND\n",
+        "DEFDAT A PUBLIC\nDECL INT I=1\nENDDAT\n",
+    ],
+)
+def test_the_header_of_a_block_gets_a_part(text: str) -> None:
+    """An edit that reads the whole block is better than one that reads its first line only."""
+    negatives = [Negative(None, text.replace("HALT", "A=1"), "", "parse")]
+    counter = negative_counter(PRELIMINARY, negatives)
+    (only,) = cluster(surveyed(*[text] * 4), count_negatives=counter, text_of=lambda _: text).ranked
+    wider = edited(Recognizer(PRELIMINARY), only.proposals[0].edits)
+    assert wider is not None
+    assert wider.accepts(text)
 
 
 def test_failures_mended_by_one_edit_are_one_cluster() -> None:

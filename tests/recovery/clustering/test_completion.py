@@ -14,7 +14,7 @@ from grammar.notation.edits import (
     apply,
 )
 from grammar.notation.g4 import read
-from recovery.clustering.cause import Cause
+from recovery.clustering.cause import Cause, Rivals
 from recovery.clustering.completion import completed, continued
 from tests.recovery.clustering.test_merged_causes import (
     GRAMMAR,
@@ -38,7 +38,8 @@ def test_lines_left_get_more_of_the_same_rule() -> None:
 def test_what_costs_negatives_is_not_added() -> None:
     """A completed proposal accepts no more of them than the proposal itself."""
 
-    def count_negatives(edits: Sequence[Edit]) -> int:
+    def count_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
+        del rivals
         return "'<'" in str(edits) and "'>'" in str(edits)
 
     searched = search(count_negatives)

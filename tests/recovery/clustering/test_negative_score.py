@@ -60,3 +60,14 @@ def test_no_program_is_missed() -> None:
         assert wider is not None
         assert len(everything.accepted(wider)) == 1
         assert count_negatives([edit]) >= 1
+
+
+def test_what_only_leaves_a_block_open_is_no_better() -> None:
+    """A negative that a rival accepts counts for all edits that read the line at which it fails."""
+    program = Negative(None, "DEF A()\nLOOP 5\nHALT\nENDLOOP\nEND\n", "", "parse")
+    count_negatives = negative_counter(RECOGNIZER.grammar, [program])
+    whole = (Insert("loopStatement", (1, 2), "INTEGER?"),)
+    bare = (AddAlternative("loopStatement", "LOOP INTEGER"),)
+    other = (AddAlternative("simpleStatement", "ENDLOOP INTEGER"),)
+    assert [1, 0, 0] == [count_negatives(edits) for edits in (whole, bare, other)]
+    assert [1, 1, 0] == [count_negatives(edits, [whole]) for edits in (whole, bare, other)]
