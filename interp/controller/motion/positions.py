@@ -150,7 +150,7 @@ class Positions:
         }
         self._variables = variables = state.variables
         homes: dict[str, tuple[Path, Path]] = {"$IN_HOME": (("$H_POS",), ("$H_POS_TOL",))}
-        for place in (1, 2, 3, 4, 5):
+        for place in range(1, 6):
             homes[f"$IN_HOME{place}"] = ("$AXIS_HOME", place), ("$H_AXIS_TOL", place)
         for name, (home, tolerance) in homes.items():
             variables.connect([name], Computed(partial(self._is_home, home, tolerance)))
