@@ -49,7 +49,7 @@ def test_every_other_line_keeps_its_number(line_end: str, before: list[str], bod
     ("driver", "stand_ins", "said"),
     [
         (Driver("T", ("x = ",), "work"), {}, "'x = ' is no statement of KRL"),
-        (Driver("T", ("HALT\nHALT",), "work"), {}, "is no statement of KRL"),
+        (Driver("T", ("HALT\nEND\nDEF B()",), "work"), {}, "is no statement of KRL"),
         (Driver("T", (), "x = 1"), {}, "no statement of KRL"),
         (Driver("T", (), "nothing"), {}, "no routine is called 'nothing'"),
         (Driver("T", (), "work"), {"nothing": [["HALT"]]}, "no stand-in can replace it"),
