@@ -187,7 +187,7 @@ class SplineRange:
     keyword: str
     edge: str
     value: float | None
-    on_start: bool = False
+    on_start: bool
 
 
 @dataclass(frozen=True, slots=True)

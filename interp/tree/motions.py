@@ -96,7 +96,7 @@ class Motions(Calls):
                 return SplineRange("CONST_VEL", node.edge, place, node.on_start)
             case ast.TimeBlock():
                 value = yield from self._optional(node.value)
-                return SplineRange("TIME_BLOCK", node.edge, value)
+                return SplineRange("TIME_BLOCK", node.edge, value, on_start=False)
         place = yield from self.real(node.place)
         return SplineStop(place, node.on_start, self.run.defer(node.condition, self.frame))
 
