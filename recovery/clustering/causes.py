@@ -78,7 +78,7 @@ def find_causes(
             on_done(1)
         causes = merged_by_first_word(search, causes)
     causes = merged_by_reason(search, merged_by_edits(search, causes), reasons)
-    more = completed if len(causes) <= MOST_CAUSES_COMPLETED else _with_gathered
+    more = completed if len(causes) <= MOST_CAUSES_COMPLETED else with_gathered
     causes = [more(search, cause) for cause in causes]
     return [replace(cause, proposals=cause.proposals[:MOST_PROPOSALS]) for cause in causes]
 
@@ -196,8 +196,8 @@ def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
     return Cause(tuple(sorted(lines)), tuple(search.ranked(list(found.values()), lines)))
 
 
-def _with_gathered(search: CauseSearch, cause: Cause) -> Cause:
-    """Return a cause with what its proposals do together."""
+def with_gathered(search: CauseSearch, cause: Cause) -> Cause:
+    """Return a cause with what its proposals do together, if anything."""
     more = _gathered(search, cause.proposals, frozenset(cause.lines))
     if not more:
         return cause
@@ -227,7 +227,7 @@ def _gathered(
         if isinstance(edit, AddAlternative) and best and _words(proposal) <= _words(best):
             of_rule[edit.rule].append(proposal)
     covers = {rule: _cover(search, some, lines) for rule, some in of_rule.items()}
-    if not covers:
+    if not any(covers.values()):
         return []
     rule = max(covers, key=lambda rule: sum(_worth(search, lines, p) for p in covers[rule]))
     chosen = covers[rule]

@@ -7,7 +7,12 @@ from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal, Rivals, no_negatives
-from recovery.clustering.causes import merged_by_edits, merged_by_first_word, merged_by_reason
+from recovery.clustering.causes import (
+    merged_by_edits,
+    merged_by_first_word,
+    merged_by_reason,
+    with_gathered,
+)
 from recovery.clustering.search import CauseSearch
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
@@ -142,6 +147,26 @@ def test_causes_that_need_the_same_word_are_one() -> None:
     [one] = merged_by_reason(searched, causes, [("<",), ("<",), ("word", "WORD"), (">",)])
     assert (0, 1, 2, 3) == one.lines
     assert causes == merged_by_reason(searched, causes, [("<",), ("<",), *[("word", "OTHER")] * 2])
+
+
+def test_the_alternatives_of_a_missing_rule_are_one_proposal() -> None:
+    """The first proposal repairs all lines of a cause."""
+    searched = search()
+    alternatives = [AddAlternative("line", f"IF NAME '{sign}' NAME NEWLINE") for sign in "<>"]
+    less, more = (searched.proposal((edit,), 0) for edit in alternatives)
+    first, *others = with_gathered(searched, Cause((0, 1, 2, 3), (less, more))).proposals
+    assert set(alternatives) == set(first.edits)
+    assert mends_all(first)
+    assert {less, more} == {*others}
+
+
+def test_alternatives_that_repair_nothing_are_not_gathered() -> None:
+    """Lines that are only read further need something else."""
+    searched = search()
+    further = searched.proposal((AddAlternative("line", "IF NAME '<' '<' NEWLINE"),), 0)
+    assert {0, 1} == further.advanced
+    cause = Cause((0, 1), (further,))
+    assert cause == with_gathered(searched, cause)
 
 
 def test_causes_that_add_uncalled_rules_to_one_rule_are_one() -> None:
