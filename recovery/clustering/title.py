@@ -175,7 +175,7 @@ class TitleWriter:
     def _phrase(self, kind: int) -> str:
         """Return a token kind as part of a sentence: ``DECL``, ``','``, ``an enum constant``."""
         if kind == ERROR:
-            return "an unknown character"
+            return "a character without a token"
         name, text = self._lexer.names[kind], self._lexer.display[kind]
         if kind in self._ends:
             return f"the end of the {'file' if kind == EOF else 'line'}"

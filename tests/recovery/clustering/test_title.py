@@ -26,7 +26,7 @@ def cluster_of(*lines: str, closer: str = "END\n") -> Cluster:
     [
         ("RETURN 1", "RETURN followed by an integer"),
         ("A B", "A name followed by a name"),
-        ("B?", "A name followed by an unknown character"),
+        ("B?", "A name followed by a character without a token"),
         ("A=1.B", "Line goes on with '.'"),
         ("LIN P1 CONTINUE", "LIN with CONTINUE"),
         ("LIN P1[1] CONTINUE", "LIN with CONTINUE where '.' or C_DIS is expected"),
@@ -36,7 +36,7 @@ def cluster_of(*lines: str, closer: str = "END\n") -> Cluster:
         ("X[,]=3", "',' right behind '['"),
         ("A=F(1,X[2,3])", "',' in '[]'"),
         ("PTP {A1 0}", "PTP with an integer in '{}' where ':' is expected"),
-        ("?", "An unknown character begins a line"),
+        ("?", "A character without a token begins a line"),
         ("FOO", "A name alone on a line"),
         ("A=B*+C", "'*' followed by '+'"),
     ],
