@@ -652,7 +652,10 @@ def test_a_run_that_is_ended_keeps_its_trace(tmp_path: Path, number: signal.Sign
     file.write_text("DEF MAIN()\nLOOP\nWAIT SEC 0.001\nENDLOOP\nEND\n", encoding="ascii")
     out = tmp_path / "out"
     words = ["run", str(file), "--trace", str(out / "t.jsonl"), "--until", "1000000"]
-    with subprocess.Popen([sys.executable, "-m", "krl", *words], stderr=subprocess.PIPE) as run:
+    # a background job ignores SIGINT
+    heeds = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+    begin = f"{heeds}; import sys; from krl.cli import main; sys.exit(main())"
+    with subprocess.Popen([sys.executable, "-c", begin, *words], stderr=subprocess.PIPE) as run:
         assert run.stderr is not None
         while not out.exists() or not [*out.iterdir()]:
             assert run.poll() is None
