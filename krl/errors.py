@@ -82,12 +82,12 @@ def run(app: typer.Typer, arguments: Sequence[str] | None = None) -> int:
 
         from grammar.syntax.node_plans import NoNode
 
-        if isinstance(error, NoNode):  # of a grammar that somebody extends
-            return _refuse(str(error))
         if isinstance(error, BrokenExecutor):
             return _refuse("a process of krl was ended from outside; the memory may have run out")
         if os.environ.get("KRL_TRACEBACK"):
             raise
+        if isinstance(error, NoNode):  # of a grammar that somebody extends
+            return _refuse(str(error))
         return _refuse(
             f"a defect in krl itself, {type(error).__name__}: {error} "
             "(set KRL_TRACEBACK=1 to see where, and please report it)"

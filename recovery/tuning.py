@@ -213,7 +213,7 @@ WIDE_PER_SITE = 4
 SAMPLE_LINES = 8
 #: Candidates with the same result that are considered, the narrowest. Revised: 4.
 KEPT_PER_RESULT = 12
-#: Candidates tried on all lines, and those of one rule. Revised: 6, 5, 8.
+#: Candidates tried on all lines, and those of one kind of edit in one rule. Revised: 6, 5, 8.
 KEPT = 10
 KEPT_LIGHT = 6
 KEPT_PER_RULE = 3
@@ -296,9 +296,9 @@ MOST_GATHERED = 16
 #: edits would mix them; proposals of each, in different rules; how often what one leaves is sought;
 #: and groups of lines that are searched each time. Bound on time.
 MOST_CAUSES_COMPLETED = 5
+MOST_COMPLETED = 2
 MOST_COMPLETIONS = 8
 MOST_GROUPS_COMPLETED = 4
-MOST_COMPLETED = 2
 #: The least share of its lines that a proposal repairs to be completed, and that it has to repair
 #: then. Not measured: the second keeps causes apart where lines fail for several.
 LEAST_COMPLETED = 0.1

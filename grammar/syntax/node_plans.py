@@ -192,8 +192,8 @@ def draft(
             frames.pop()
             try:
                 value = rules[frame.inner.rule](plan, frame.parts)
-            except (AssertionError, LookupError, TypeError, ValueError):
-                raise NoNode(frame.inner.rule) from None
+            except (AssertionError, LookupError, TypeError, ValueError) as error:
+                raise NoNode(frame.inner.rule) from error
             frame.above.append(DraftPart(frame.outline.rule, value, frame.first, frame.at))
     return plan.plan(top[0].value)
 

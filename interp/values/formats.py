@@ -306,6 +306,8 @@ def _number(letter: str, digits: str) -> int | float | None:
         return real_of(digits)
     if letter in "di":
         return integer_of(digits)
+    if len(digits) > len("0x") + 32:  # Python refuses to convert thousands
+        return None
     number = int(digits, 16 if letter == "x" else 10)
     if number > 0xFFFFFFFF:
         return None

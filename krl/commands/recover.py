@@ -112,7 +112,7 @@ def recover(
         bool,
         typer.Option(
             "--resume",
-            help="With --auto: continue from the state in --out DIR, which holds the options.",
+            help="With --auto: continue from the state in --out DIR, with its seed and origins.",
         ),
     ] = False,
     strike: Annotated[

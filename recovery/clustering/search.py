@@ -156,7 +156,7 @@ class CauseSearch:
             for candidate in merged_as_choice([c for c, o in first if o.mended])
         ]
         proposals = []
-        blocks = [] if rules else self._blocks(specimens[0], heavy)
+        blocks = [] if rules is not None else self._blocks(specimens[0], heavy)
         for candidate, negatives in (*blocks, *self._kept(first)):
             result = self.trial.result(candidate.edits, self.open)
             edits, breadth = candidate.edits, candidate.breadth

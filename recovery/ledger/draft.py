@@ -27,7 +27,7 @@ def propose(record: Mapping[str, Any], cluster: str, number: int, folder: Path) 
 
     ``cluster`` is an ID or its beginning. The comment at the head of the file has the survey's
     figures for the proposal. Returns the new file; an existing one is never replaced. Raises
-    `LedgerError`, also if a file already proposes these edits.
+    `LedgerError`, also if a file of the same name already proposes these edits.
     """
     chosen = _cluster(record, cluster)
     proposals = chosen["proposals"]

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -77,6 +78,12 @@ def test_what_is_written_can_be_read(whole: int, number: float, word: str) -> No
     written = _swrite("%d %s %x %.9e", whole, word, whole, number, size=80)
     read = _sread(_written(written), "%d %s %x %e", 4)
     assert [whole, word, whole, number] == _read(read)
+
+
+@pytest.mark.parametrize("letter", "duxfeg")
+def test_thousands_of_digits_are_no_number(letter: str) -> None:
+    """They are read as little as any other number that is too large."""
+    assert "FMT_ERR" == _state(_sread("9" * 5000, f"%{letter}", 1))[0]
 
 
 @given(st.text("%+-#0123456789.dfsxcgeu ", max_size=12), st.lists(st.integers(), max_size=3))

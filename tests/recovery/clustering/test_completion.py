@@ -54,15 +54,6 @@ def test_a_proposal_that_cannot_mend_nearly_all_lines_stays_as_it_is() -> None:
     assert cause == completed(searched, cause)
 
 
-def test_other_rules_are_left_alone() -> None:
-    """What mends the other lines in a rule that no proposal changes is another cause."""
-    searched = search()
-    cause = Cause((0, 1, 2, 3), (searched.proposal((AddAlternative("program", "line"),), 0),))
-    assert {"program"} == {
-        getattr(edit, "rule", "") for p in completed(searched, cause).proposals for edit in p.edits
-    }
-
-
 def test_what_is_missing_in_two_rules_is_one_rule() -> None:
     """Each gets what only the other one shows."""
     searched, added = gathering()

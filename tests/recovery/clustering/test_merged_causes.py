@@ -160,6 +160,20 @@ def test_the_alternatives_of_a_missing_rule_are_one_proposal() -> None:
     assert {less, more} == {*others}
 
 
+def test_what_is_gathered_accepts_no_more_negatives() -> None:
+    """An alternative that costs negatives beside the others is left out."""
+
+    def count_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
+        del rivals
+        return any("'<'" in str(edit) for edit in edits) and "'>'" in str(edits)
+
+    searched = search(count_negatives)
+    alternatives = [AddAlternative("line", f"IF NAME '{sign}' NAME NEWLINE") for sign in "<>"]
+    less, more = (searched.proposal((edit,), 0) for edit in alternatives)
+    cause = Cause((0, 1, 2, 3), (less, more))
+    assert cause == with_gathered(searched, cause)
+
+
 def test_alternatives_that_repair_nothing_are_not_gathered() -> None:
     """Lines that are only read further need something else."""
     searched = search()
