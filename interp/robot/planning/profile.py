@@ -64,6 +64,7 @@ class SpeedProfile:
         """Return position, speed and acceleration at a time; outside as in `at`."""
         clipped = min(max(time, 0.0), self.duration)
         later = (place for place, knot in enumerate(self.knots) if knot[0] > clipped)
+        # where none is later, that is the last one
         start, position, speed, acceleration, jerk = self.knots[next(later, 0) - 1]
         dt = clipped - start
         return (
