@@ -206,7 +206,7 @@ class _TraceWriter:
 def _tracing(file: Path | None, most: int) -> Iterator[_TraceWriter | None]:
     """Yield what writes the trace, to a temporary file that is moved to its path at the end.
 
-    A process that receives SIGINT or SIGTERM keeps and tells what is traced so far.
+    A process that receives SIGINT or SIGTERM keeps what is traced so far, and reports it.
     """
     if file is None:
         yield None

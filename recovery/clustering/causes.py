@@ -8,9 +8,9 @@ group that it does not repair are searched again.
 At the end, causes are merged if one edit repairs the lines of both: an edit sought anew for causes
 whose lines begin with the same word, or one made from the edits of two causes
 (`recovery.clustering.edit_merging`). Causes whose lines fail for the same reason
-(`recovery.clustering.reason`) are merged as well. Where few causes are left,
-their best proposals are completed (`recovery.clustering.completion`), else alternatives that
-several proposals add to one rule are gathered.
+(`recovery.clustering.reason`) are merged as well. Where few causes are left, their best proposals
+are completed (`recovery.clustering.completion`), else alternatives that several proposals add to
+one rule are gathered.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from functools import partial
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
-from recovery.clustering.completion import as_one_rule, completed
+from recovery.clustering.completion import added_alternatives, as_one_rule, completed
 from recovery.clustering.edit_merging import (
     are_one_change,
     combined_edits,
@@ -179,8 +179,7 @@ def _words_for(reason: Reason | int, cause: Cause) -> frozenset[str]:
 def _gathers_again(search: CauseSearch, cause: Cause) -> str:
     """Return the rule that gets rules which nothing calls: what had gathered them is missing."""
     unused_in = search.finder.profile.unused_in
-    edits = (edit for best in cause.proposals[:1] for edit in best.edits)
-    added = (edit for edit in edits if isinstance(edit, AddAlternative))
+    added = (edit for best in cause.proposals[:1] for edit in added_alternatives(best))
     return next((edit.rule for edit in added if unused_in(edit.text)), "")
 
 

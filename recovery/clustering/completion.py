@@ -77,7 +77,7 @@ def as_one_rule(search: CauseSearch, proposal: Proposal) -> Proposal:
 
     What is missing in both is one rule, of which one place need not show all.
     """
-    ends = {e.rule: search.finder.closing(e.rule) for e in _alternatives(proposal)}
+    ends = {e.rule: search.finder.closing(e.rule) for e in added_alternatives(proposal)}
     texts = {rule: dict.fromkeys(_texts(proposal, rule, ends[rule])) for rule in ends}
     for rule, other in permutations(ends, 2):
         common = texts[rule].keys() & texts[other].keys()
@@ -91,13 +91,14 @@ def as_one_rule(search: CauseSearch, proposal: Proposal) -> Proposal:
     return proposal
 
 
-def _alternatives(proposal: Proposal) -> list[AddAlternative]:
+def added_alternatives(proposal: Proposal) -> list[AddAlternative]:
+    """Return the edits of a proposal that add alternatives."""
     return [edit for edit in proposal.edits if isinstance(edit, AddAlternative)]
 
 
 def _texts(proposal: Proposal, rule: str, end: Sequence[str]) -> list[str]:
     """Return the alternatives that a rule gets, without line end; each of a choice by itself."""
-    texts = [edit.text for edit in _alternatives(proposal) if edit.rule == rule]
+    texts = [edit.text for edit in added_alternatives(proposal) if edit.rule == rule]
     return [text for whole in texts for text in choices(whole.removesuffix(" ".join(("", *end))))]
 
 

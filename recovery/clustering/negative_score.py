@@ -43,10 +43,7 @@ def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> Negativ
 
     def accepted(edits: tuple[Edit, ...]) -> frozenset[int]:
         if edits not in known:
-            try:
-                known[edits] = programs.accepted(edits)
-            except GrammarError:
-                known[edits] = nothing
+            known[edits] = programs.accepted(edits)
         return known[edits]
 
     def count_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
@@ -83,7 +80,10 @@ class _Programs:
         return frozenset(number for number, negative in every if negative in accepted)
 
     def count_read(self, edits: Sequence[Edit], among: Set[int]) -> int:
-        """Return how many of some negatives can be read beyond the line at which they fail."""
+        """Return how many of some negatives can be read beyond the line at which they fail.
+
+        None is counted for edits that are no detours.
+        """
         found = (self._read(edits) if among else None) or ()
         end = self._recognizer.lexer.line_kind
         return sum(
@@ -95,13 +95,16 @@ class _Programs:
     def _read(self, edits: Sequence[Edit]) -> list[tuple[int, Path, int | None]] | None:
         """Return the negatives that may be read further, with their path and where they fail.
 
-        That is ``None`` if the edits are no detours.
+        That is ``None`` if the edits are no detours, and none if they do not fit the grammar.
         """
         if self._reader.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
             self._reader.recognizer.release()
             self._begin()
         reader = self._reader
-        detours = reader.detours(edits)
+        try:
+            detours = reader.detours(edits)
+        except GrammarError:
+            return []
         if detours is None:
             return None
         kind_of = {**self._recognizer.lexer.kind_of, **{w: reader.kind(w) for w in detours.words}}
