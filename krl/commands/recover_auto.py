@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from recovery.induction.induced_ledger import InducedLedger
     from recovery.induction.rounds import Induction
     from recovery.induction.target_comparison import Share
+    from recovery.negatives.negatives import Negative
 
 # How a growth began, as its record says it.
 _DEFAULTS: Mapping[str, Any] = {
@@ -28,6 +29,10 @@ _DEFAULTS: Mapping[str, Any] = {
     "hold_out": 0.0,
     "seed": 1,
     "suffix": "",
+    "negatives_path": "",
+    "negatives_sha256": "",
+    "target_path": "",
+    "target_sha256": "",
 }
 # The number of generated negatives that edits are tested with, drawn evenly from more, and their
 # seed, which neither a bench nor the comparison with the target uses.
@@ -55,11 +60,9 @@ def recover_auto(
     It starts from ``grammar``, or from the restrictive start, or from the grammar in force less
     ``without`` constructs. ``suffix`` is the file extension for languages other than KRL.
     Everything is written after each round, so that an interruption loses no more than one. A growth
-    is continued with the settings that ``out`` holds. At the end the grown grammar is compared with
-    ``target``.
+    is continued with the settings that ``out`` holds, the folder of ``negatives`` and ``target``
+    too. At the end the grown grammar is compared with ``target``.
     """
-    from grammar.notation.foreign import read_foreign
-    from grammar.notation.g4 import read_file
     from grammar.parser.lexer import ABSENT, lexer_of
     from recovery.induction.corpus_lines import drawn_origins, held_out
     from recovery.induction.induced_ledger import InducedLedger
@@ -67,13 +70,14 @@ def recover_auto(
     from recovery.induction.target_comparison import compared
     from recovery.language import KRL, language_of
     from recovery.negatives.generate import evenly
-    from recovery.negatives.negatives import NegativeSet, load
+    from recovery.negatives.negatives import NegativeSet
 
     began = time.monotonic()
     is_continued = resume or bool(strike)
     _check(grammar, without, hold_out, suffix, is_continued=is_continued)
     given = {"hold_out": hold_out, "seed": seed, "suffix": suffix or None}
-    settings = _settings(given, out, is_continued=is_continued)
+    known = _state(out) if is_continued else {}
+    settings = _settings(given, known, out)
     with expected_errors():
         if is_continued:
             ledger, struck = _ledger_so_far(grammar, out, strike)
@@ -81,8 +85,8 @@ def recover_auto(
             start, names = _start(grammar, without, settings["seed"])
             settings |= names
             ledger, struck = InducedLedger(start, start), []
-        rejected = load(negatives) if negatives else ()
-        goal = read_file(target, read_foreign) if target else None
+        rejected, goal, read = _negatives_and_target(negatives, target, known, out)
+        settings |= read
         language = language_of(settings["suffix"]) if settings["suffix"] else KRL
         files = language.files(roots)
     lexer = lexer_of(ledger.start)
@@ -110,9 +114,9 @@ def recover_auto(
     written = _Output(ledger, struck, out, json_file, settings, began)
     is_finished = _grow(induction, written)
     reached = None
-    if target and goal:
+    if goal:
         reached = {
-            "name": target.name,
+            "name": Path(settings["target_path"]).name,
             **compared(ledger.grammar, goal, shown, held, language),
         }
     page = written.write(is_finished, reached)
@@ -132,15 +136,42 @@ def _check(
         raise InputError(f"--hold-out {hold_out:g}: not from 0 to less than 1")
 
 
-def _settings(given: Mapping[str, Any], out: Path, *, is_continued: bool) -> dict[str, Any]:
-    """Return the settings of a growth: those in ``out`` if it is continued, else those given.
+def _negatives_and_target(
+    negatives: Path | None, target: Path | None, known: Mapping[str, Any], out: Path
+) -> "tuple[Sequence[Negative], Grammar | None, dict[str, Any]]":
+    """Return the written negatives, the grammar to compare with, and both as settings.
 
-    ``None`` is not given. Raises `InputError` if one that is given differs from that in ``out``.
+    What is not given is that of the ``known`` settings of a growth in ``out``. What that was begun
+    without may be given later. Raises `InputError` if it was begun with another text.
+    """
+    from grammar.notation.foreign import read_foreign
+    from grammar.notation.g4 import read_file
+    from recovery.negatives.negatives import load
+    from support.files.decode import digest
+
+    folder = negatives or Path(known.get("negatives_path") or "")
+    file = target or Path(known.get("target_path") or "")
+    rejected = load(folder) if folder.name else ()
+    goal = read_file(file, read_foreign) if file.name else None
+    settings: dict[str, Any] = {}
+    for option, path, text in (
+        ("negatives", folder, "\0".join(f"{n.phase} {n.line} {n.text}" for n in rejected)),
+        ("target", file, goal.text if goal else ""),
+    ):
+        found = digest(text.encode()) if path.name else ""
+        if known.get(f"{option}_sha256") not in (None, "", found):
+            raise InputError(f"--{option} {path}: {out} was begun with another")
+        settings[f"{option}_path"] = str(path) if path.name else ""
+        settings[f"{option}_sha256"] = found
+    return rejected, goal, settings
+
+
+def _settings(given: Mapping[str, Any], known: Mapping[str, Any], out: Path) -> dict[str, Any]:
+    """Return the settings of a growth: those ``known`` of one in ``out``, then those given.
+
+    ``None`` is not given. Raises `InputError` if one that is given differs from the known one.
     """
     given = {name: value for name, value in given.items() if value is not None}
-    if not is_continued:
-        return {**_DEFAULTS, **given}
-    known = _state(out)
     for name, value in given.items():
         if value != known.get(name, value):
             option = name.replace("_", "-")
@@ -261,7 +292,7 @@ class _Output:
         ledger, out = self.ledger, self.out
         record = record_of(
             ledger,
-            **self.settings,
+            self.settings,
             seconds=time.monotonic() - self.began,
             is_finished=is_finished,
             target=reached,

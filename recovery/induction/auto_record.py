@@ -6,7 +6,7 @@ changed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from importlib import metadata
 from typing import Any
@@ -16,32 +16,19 @@ from recovery.induction.induced_ledger import InducedLedger
 
 def record_of(
     ledger: InducedLedger,
+    settings: Mapping[str, Any],
     *,
-    start: str,
-    without: Sequence[str],
-    held_out: Sequence[str],
-    hold_out: float,
-    seed: int,
-    suffix: str,
     seconds: float,
     is_finished: bool,
     target: Mapping[str, Any] | None,
 ) -> dict[str, Any]:
-    """Return the record of the rounds so far.
+    """Return the record of the rounds so far, with the ``settings`` with which they began.
 
-    ``start`` is the name of the grammar at the start, ``without`` are the IDs of the constructs
-    that it lacks. ``held_out`` are the origins that were not shown, ``hold_out`` is the share that
-    was asked for. ``suffix`` is that of the files, empty for KRL. ``target`` compares the result
-    with another grammar (`recovery.induction.target_comparison`).
+    ``target`` compares the result with another grammar (`recovery.induction.target_comparison`).
     """
     record: dict[str, Any] = {
-        "start": start,
+        **settings,
         "start_sha256": ledger.start.sha256,
-        "without": list(without),
-        "held_out": list(held_out),
-        "hold_out": hold_out,
-        "suffix": suffix,
-        "seed": seed,
         "rounds": ledger.rounds,
         "finished": is_finished,
         "version": metadata.version("krl-workbench"),

@@ -20,6 +20,7 @@ from recovery.induction.target_comparison import compared, within_reach
 from recovery.language import KRL
 from recovery.ledger.ledger import Ledger, in_force
 
+NEGATIVES = GRAMMAR.parents[1] / "corpus" / "negatives"
 PRELIMINARY = GRAMMAR.with_name("preliminary.g4")
 TEXTS = (
     "DEF {0}()\nFOR I=1 TO 9 STEP 2\nENDFOR\nRETURN {0}1\nEND\n",
@@ -172,7 +173,9 @@ def test_an_interrupted_run_keeps_what_was_done(
                 raise KeyboardInterrupt
             yield done
 
-    options = ("--hold-out", "0.33", "--seed", "3", "--out", tmp_path)
+    monkeypatch.setattr(target_comparison, "_SENTENCES", 2)
+    monkeypatch.setattr(target_comparison, "_NEGATIVES", 2)
+    options = ("--hold-out", "0.33", "--seed", "3", "--target", GRAMMAR, "--out", tmp_path)
     with monkeypatch.context() as patched:
         patched.setattr(Induction, "rounds", two)
         assert auto(corpus, *options) == 0
@@ -180,8 +183,9 @@ def test_an_interrupted_run_keeps_what_was_done(
     begun = record(tmp_path)
     assert auto(corpus, "--out", tmp_path, "--resume") == 0
     assert (out / "grammar.g4").read_bytes() == (tmp_path / "grammar.g4").read_bytes()
-    kept = ("start", "without", "held_out", "hold_out", "seed", "suffix")
+    kept = ("start", "without", "held_out", "hold_out", "seed", "suffix", "target_sha256")
     assert [begun[key] for key in kept] == [record(tmp_path)[key] for key in kept]
+    assert "KRL.g4" == record(tmp_path)["target"]["name"]
     assert (1, 0.33, 3) == (len(begun["held_out"]), begun["hold_out"], begun["seed"])
 
 
@@ -192,6 +196,7 @@ def test_an_interrupted_run_keeps_what_was_done(
         ("--seed", "4", "--seed 4: {} was begun with 3"),
         ("--suffix", ".s", "--suffix .s: {} was begun with none"),
         ("--grammar", str(GRAMMAR), f"--grammar {GRAMMAR}: {{}} was begun with another grammar"),
+        ("--target", str(PRELIMINARY), f"--target {PRELIMINARY}: {{}} was begun with another"),
     ],
 )
 def test_a_growth_is_continued_with_its_own_options(
@@ -255,6 +260,21 @@ def test_a_start_without_line_ends(
     (tmp_path / "auto.json").write_text("{}")
     assert auto(corpus, *(option.format(tmp_path) for option in options)) == 2
     assert "no token of line ends" in capsys.readouterr().err
+
+
+def test_negatives_are_the_same_when_a_growth_goes_on(
+    corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """They need not be given again, and must not have changed."""
+    written, out = tmp_path / "negatives", tmp_path / "out"
+    written.mkdir()
+    file = next(NEGATIVES.rglob("*.src"))
+    shutil.copy(file, written)
+    assert auto(corpus, "--negatives", written, "--out", out) == 0
+    assert auto(corpus, "--out", out, "--resume") == 0
+    (written / file.name).write_text(f"{file.read_text('utf-8')}\n")
+    assert auto(corpus, "--out", out, "--resume") == 2
+    assert f"{out} was begun with another" in capsys.readouterr().err
 
 
 def test_an_unknown_step(out: Path, corpus: Path, capsys: pytest.CaptureFixture[str]) -> None:
