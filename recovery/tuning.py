@@ -329,8 +329,9 @@ INFERRED_FILES = 3
 #: single origin. Not measured.
 INFERRED_FILES_ALONE = 5
 LEAST_FILES_ALONE = 2
-#: The least share of its uses in such contexts; the share of files with uses as a name, and
-#: the lines with one, from which on it stays a name. Not measured.
+#: The least share of its uses in such contexts, and of lines that have a quote in pairs; the share
+#: of files with uses as a name, and the lines with one, from which on it stays a name. Not
+#: measured.
 INFERRED_SHARE = 0.8
 NAME_SHARE = 0.02
 NAMED_LINES = 3
@@ -365,6 +366,8 @@ MIDDLE_ORIGINS = 3
 BODY_PART = 20
 #: The part of what one rule reads that two may read together to be preferred. Not measured.
 READ_TOGETHER_SHARE = 0.8
+#: Different signs and blanks in quotes from which on any character may be there. Not measured.
+QUOTED_SIGNS = 2
 #: Kinds of list from which on a first item may have a form of its own. Not measured.
 MANY_LISTS = 8
 #: Characters of the signs ahead that distinguish one in a line from others. Bound on memory.

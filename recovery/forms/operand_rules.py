@@ -91,13 +91,17 @@ class OperandRules:
 
     @cached_property
     def recursive(self) -> frozenset[str]:
-        """The largest set of mutually recursive rules within a line: those of expressions."""
+        """The largest set of mutually recursive rules within a line: those of expressions.
+
+        Where no rule calls itself, those that read a name alone and another value alone.
+        """
         groups = {
             frozenset(o for o in called & self.within_lines if name in self.reaches[o])
             for name, called in self.reaches.items()
             if name in called and name in self.within_lines
         }
-        return max(groups, key=lambda g: (len(g), sorted(g)), default=frozenset())
+        values = self.matcher.value_rules & self.within_lines
+        return max(groups, key=lambda g: (len(g), sorted(g)), default=values)
 
     @cached_property
     def widest(self) -> str | None:

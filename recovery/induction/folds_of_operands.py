@@ -18,8 +18,12 @@ from grammar.notation.edits import (
 )
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat, Rule, walk
 from recovery.induction.grammar_view import GrammarView, sign_of
+from recovery.induction.line_symbols import PREFIXES
 from recovery.induction.steps import InferredStep
 from recovery.tuning import FOLDING_SYMBOLS
+
+# Signs that may stand ahead of an operand, as rules write them.
+_PREFIXES = frozenset(f"'{sign}'" for sign in PREFIXES)
 
 
 def trailing(view: GrammarView) -> Iterator[InferredStep]:
@@ -122,7 +126,7 @@ def signs(view: GrammarView) -> Iterator[InferredStep]:
                 for e in walk(a.elements[0])
                 if (known := sign_of(e))
             }
-            more = alike.get(sign, frozenset()) - beside
+            more = alike.get(sign, frozenset()).intersection(_PREFIXES) - beside
             if others and more:
                 text = f"({' | '.join(sorted({sign, *more}))}){often}"
                 title = f"{', '.join(sorted(more))} ahead of operands in {name}"

@@ -118,7 +118,8 @@ class GrammarView:
             words = self.words(element)
             if words and words <= self.types and self.is_name(following):
                 return self.kind
-            return min(words) if len(words) == 1 and len(elements) > 1 else ""
+            is_word = len(words) == 1 and len(elements) > 1 and self.lexer.name not in words
+            return min(words) if is_word else ""
         return ""
 
     def is_name(self, element: Element | None) -> bool:

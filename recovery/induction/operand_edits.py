@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import cached_property
 
 from grammar.notation.addresses import Address, sequence_at
-from grammar.notation.edits import AddAlternative, AddRule, Edit, Replace, Widen
+from grammar.notation.edits import (
+    AddAlternative,
+    AddRule,
+    Edit,
+    RemoveAlternative,
+    Replace,
+    Widen,
+)
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat
 from recovery.brackets import BRACKETS
+from recovery.forms.symbols import CLOSERS
 from recovery.induction.line_symbols import PREFIXES, LineSymbols
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms
@@ -52,14 +62,9 @@ class OperandEdits:
                 title = f"{text} between operands"
                 yield InferredStep(title, edits, tuple(members), breadth=breadth)
         for text, members in prefix.items():
-            for rule in self.at.rules.ladder:
-                for alternative in self.at.grammar.by_name[rule].alternatives:
-                    if len(alternative.elements) == 2 and _calls(alternative.elements[1], rule):
-                        edits = (
-                            *self.forms.reserving(text),
-                            AddAlternative(rule, f"{text} {rule}"),
-                        )
-                        yield InferredStep(f"{text} ahead of an operand", edits, tuple(members))
+            for rule in self._prefixed or filter(None, [self._operands]):
+                edits = (*self.forms.reserving(text), AddAlternative(rule, f"{text} {rule}"))
+                yield InferredStep(f"{text} ahead of an operand", edits, tuple(members))
 
     def _note_operator(
         self, number: int, infix: dict[str, list[int]], prefix: dict[str, list[int]]
@@ -80,33 +85,43 @@ class OperandEdits:
                 prefix[text].append(number)
 
     def _as_infix(self, text: str) -> Iterator[tuple[tuple[Edit, ...], int]]:
-        """Return the edits for each level of operators, and its index in the ladder."""
+        """Return the edits for each level of operators, and its index in the ladder.
+
+        The first sign or word makes a level. A further sign may bind tighter than all others and
+        than what stands ahead of operands.
+        """
         words = self.forms.reserving(text)
         is_word = text[0] != "'"
+        is_first = True
         for level, rule in enumerate(self.at.rules.ladder):
-            for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
-                for place, element in enumerate(alternative.elements, 1):
-                    if isinstance(element, Repeat) and isinstance(element.item, Group):
-                        inner = element.item.alternatives[0].elements
-                        if len(inner) == 2 and self._is_operator(inner[0], is_word=is_word):
-                            yield (*words, Widen(rule, (number, place, 1, 1), text)), level
-        if not is_word and self.at.rules.ladder:
-            # a sign of its own kind binds tighter than all others
-            for level, rule in enumerate(self.at.rules.ladder, 1):
-                for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
-                    single = alternative.elements
-                    if len(single) != 1 or not isinstance(single[0], Reference):
-                        continue
-                    lower = single[0].name
-                    if (
-                        lower in self.at.rules.ladder
-                        and len(self.at.grammar.by_name[rule].alternatives) > 1
-                        and len(self.at.grammar.by_name[lower].alternatives) > 2
-                    ):
-                        new = self._fresh(f"{lower}Chain")
-                        rule_text = f"{new}\n    : {lower} ({text} {lower})*\n    ;"
-                        yield (AddRule(rule, rule_text), Replace(rule, (number, 1), new)), level
-                        return
+            for at, operator in self._levels(rule):
+                if self._is_operator(operator, is_word=is_word):
+                    yield (*words, Widen(rule, at, text)), level
+                    is_first = False
+        is_tighter = not is_word and self._prefixed and self._operands not in self._prefixed
+        if self._operands and (is_first or is_tighter):
+            edits = (*words, *self._new_level(self._operands, text))
+            yield edits, self.at.rules.ladder.index(self._operands)
+
+    def _levels(self, rule: str) -> Iterator[tuple[Address, Element]]:
+        """Yield the operators of a rule that repeats operands behind one, with their addresses."""
+        for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
+            for place, element in enumerate(alternative.elements, 1):
+                if isinstance(element, Repeat) and isinstance(element.item, Group):
+                    inner = element.item.alternatives[0].elements
+                    if len(inner) == 2:
+                        yield (number, place, 1, 1), inner[0]
+
+    def _new_level(self, rule: str, text: str) -> Iterator[Edit]:
+        """Yield edits after which a rule repeats what it was, behind an operator."""
+        old = self.at.grammar.by_name[rule]
+        new = self._fresh(re.sub(r"Part\d*$", "", rule) + "Part")
+        alternatives = "\n    | ".join(map(old.source_of, old.alternatives))
+        yield AddRule(rule, f"{new}\n    : {alternatives}\n    ;")
+        for number in range(len(old.alternatives), 1, -1):
+            yield RemoveAlternative(rule, number)
+        count = len(old.alternatives[0].elements)
+        yield Replace(rule, (1, 1), f"{new} ({text} {new})*", count)
 
     def _is_operator(self, element: Element, *, is_word: bool) -> bool:
         some = element.alternatives[0].elements if isinstance(element, Group) else (element,)
@@ -189,19 +204,42 @@ class OperandEdits:
                 continue
             sign = self.at.rules.matcher.sign(tokens[index]) or ""
             rule = self.at.rules.bracketed.get(sign.strip("'"))
+            if sign in CLOSERS and rule is None and self.at.rules.widest:
+                rule = f"{sign} {self.at.rules.widest} {CLOSERS[sign]}"
             if rule and rule not in self.at.rules.ladder and name in self.at.expected(number):
                 found[rule].append(number)
-        count = {rule.name: len(rule.alternatives) for rule in self.at.grammar.rules}
-        gathering = max(self.at.rules.ladder, key=count.__getitem__, default=None)
         levels = [r for r in self.at.rules.ladder if self.at.profile.has_choice(r)]
         for rule, members in found.items():
             for level in levels:
                 if level not in {rule, self.at.rules.names}:
                     edits = (AddAlternative(level, rule),)
-                    breadth = 0 if level == gathering else LEVEL_SYMBOLS
+                    breadth = 0 if level == self._gathering else LEVEL_SYMBOLS
                     yield InferredStep(
                         f"{rule} as an operand", edits, tuple(members), breadth=breadth
                     )
+
+    @cached_property
+    def _operands(self) -> str | None:
+        """The level of operands without operators: the widest one that is a choice of others."""
+        found = [rule for rule in self.at.rules.ladder if self.at.profile.has_choice(rule)]
+        plain = [rule for rule in found if rule not in self._prefixed]
+        return next(iter([*plain, *found]), None)
+
+    @cached_property
+    def _prefixed(self) -> list[str]:
+        """The levels that may be an operand of their own behind a sign or word."""
+        return [
+            rule
+            for rule in self.at.rules.ladder
+            for alternative in self.at.grammar.by_name[rule].alternatives
+            if len(alternative.elements) == 2 and _calls(alternative.elements[1], rule)
+        ]
+
+    @cached_property
+    def _gathering(self) -> str | None:
+        """The level of operands with most alternatives."""
+        count = {rule.name: len(rule.alternatives) for rule in self.at.grammar.rules}
+        return max(self.at.rules.ladder, key=count.__getitem__, default=None)
 
     def _fresh(self, wanted: str) -> str:
         name, count = wanted, 2

@@ -15,6 +15,7 @@ from typing import Literal, get_args
 
 from grammar.notation.edits import (
     AddAlternative,
+    AddRule,
     AddToken,
     Edit,
     Insert,
@@ -52,6 +53,7 @@ from recovery.induction.steps import (
     described,
     joined,
 )
+from recovery.induction.unknown_tokens import unknown_token
 from recovery.language import CorpusFile, Language
 from recovery.negatives.negatives import NegativeSet
 from recovery.proposals.edit_site import LinePattern
@@ -171,7 +173,7 @@ class Induction:
         recognizer = review.recognizer
         keywords = self._words(recognizer, failures, least)
         if inner:
-            whole = self._with_literals(failures, recognizer, least[0])
+            whole = self._with_tokens(failures, recognizer, least)
             if whole is not None:
                 return [whole], []
         table = FailingLines(self.shown.files, failures, keywords)
@@ -330,6 +332,8 @@ class Induction:
         while fold := next(found, None):
             if fold.title in refused or fold.edits in self.struck | self._lossy:
                 continue
+            if not self._is_grown(review.recognizer.grammar, fold.edits):
+                continue  # what no step has changed is right as it is
             words = described(review.recognizer.grammar, fold.edits)
             if words in tried:
                 continue
@@ -360,34 +364,55 @@ class Induction:
             taken, lost = self.shown.kept(self.grammar, bounds, self._names)
         return taken, [*lost, *refused.values()]
 
-    # ------------------------------------------------------------------------------------- literals
+    def _is_grown(self, grammar: Grammar, edits: Sequence[Edit]) -> bool:
+        """Return whether all rules that edits change differ from those of the start."""
+        start, now = self._start.by_name, grammar.by_name
+        return all(n not in start or start[n].text != now[n].text for n in changed_rules(edits))
 
-    def _with_literals(
-        self, failures: Failures, recognizer: Recognizer, least: int
+    # --------------------------------------------------------------------------------------- tokens
+
+    def _with_tokens(
+        self, failures: Failures, recognizer: Recognizer, least: tuple[int, int]
     ) -> AcceptedStep | None:
-        """Return a step for literals that the lexer splits; ``None`` without such literals."""
+        """Return a step for what the lexer splits or has no token for; ``None`` without any.
+
+        A sign is first a token, and then what rules may read.
+        """
         lines: list[tuple[str, int]] = []
         for place, (file, of_file) in enumerate(zip(self.shown.files, failures, strict=True)):
             source = source_lines(file.text) if of_file else []
             failing = (f.line for f in of_file if f.line <= len(source))
             lines += ((source[line - 1], place) for line in failing)
-        found = split_literals(lines, recognizer.lexer)
-        if found is None or found[0] in self._tried:
+        split = split_literals(lines, recognizer.lexer)
+        if split and split[0] not in self._tried:
+            edit, places, seen = split
+            step = self._token_step(f"{seen[0]} is one literal", edit, places, seen, least)
+            if step and self.shown.gains(self.grammar, [step]):
+                self._tried.add(edit)  # else lines may still fail ahead of it: it is tried again
+                return step
+        unknown = unknown_token(lines, recognizer.lexer, self.grammar.by_name)
+        if unknown is None:
             return None
-        edit, places, seen = found
+        rule, places, seen = unknown
+        added = AddRule(self.grammar.rules[-1].name, rule)
+        return self._token_step(f"{seen[0]} is a token", added, places, seen, least)
+
+    def _token_step(
+        self,
+        title: str,
+        edit: Edit,
+        places: Collection[int],
+        seen: tuple[str, ...],
+        least: tuple[int, int],
+    ) -> AcceptedStep | None:
+        """Return a step with the edit of a token if it has evidence and loses no lines."""
         origins = frozenset[str]().union(*(self.shown.files[place].origins for place in places))
-        if len(origins) < least:
+        if len(origins) < least[0] or len(places) < least[1] or (edit,) in self.struck:
             return None
         evidence = Evidence(len(places), len(origins), len(seen), seen[:PLACES_SHOWN])
-        step = AcceptedStep(f"{seen[0]} is one literal", (edit,), evidence)
-        kept = self.shown.kept(self.grammar, [step], self._names)[0]
-        if kept and not self.shown.gains(self.grammar, kept):
-            return None  # lines may still fail ahead of it: it is tried again
-        self._tried.add(edit)
-        if not kept:
-            return None
+        kept, _ = self.shown.kept(self.grammar, [AcceptedStep(title, (edit,), evidence)], None)
         self._corpus = self._keywords = None
-        return step
+        return kept[0] if kept else None
 
 
 def _narrower(review: EditReview, fold: InferredStep, had: Set[str]) -> Recognizer | str:

@@ -105,6 +105,12 @@ def test_what_may_be_folded(folds: dict[str, InferredStep]) -> None:
     } == folds.keys()
 
 
+def test_a_name_is_no_first_word() -> None:
+    """Lines that begin with a name are of no family."""
+    view = GrammarView(Recognizer(read(_GRAMMAR)), ())
+    assert "NAME" not in {word for _, word, _ in view.families}
+
+
 @pytest.mark.parametrize(
     ("text", "accepted"),
     [("BOOL A[1], B\n", True), ("REAL A, B\n", True), ("GO A, B\n", False), ("INT 1\n", False)],

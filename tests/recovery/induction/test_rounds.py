@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -37,10 +38,13 @@ from recovery.negatives.negatives import Negative, NegativeSet
 
 
 def _grown(
-    start: Grammar, files: tuple[CorpusFile, ...], negatives: tuple[Negative, ...] = ()
+    start: Grammar,
+    files: tuple[CorpusFile, ...],
+    negatives: tuple[Negative, ...] = (),
+    begun: Grammar | None = None,
 ) -> InducedLedger:
     growth = InducedLedger(start, start)
-    induction = Induction(start, files, (), NegativeSet(negatives))
+    induction = Induction(start, files, (), NegativeSet(negatives), start=begun)
     for done in induction.rounds():
         growth.add(done)
     return growth
@@ -262,6 +266,47 @@ def test_what_comes_once_or_more_may_be_missing(toy: Grammar) -> None:
     recognizer = Recognizer(_grown(start, files).grammar)
     texts = ("F(A + )\n", "F(A + 1 2 3 4 5)\n", "F()\n")
     assert [True, True, False] == [recognizer.accepts(text) for text in texts]
+
+
+_FLAT = (
+    "    : product ('+' product)*\n    ;\n\nproduct\n    : factor ('*' factor)*\n    ;\n\n"
+    "factor\n    : primary\n    ;\n\nprimary\n    : NUMBER\n    | NAME\n    | call\n"
+    "    | '(' expression ')'\n"
+)
+
+
+def _drawn(random: Random) -> str:
+    """Return a program with operators, signs and brackets at any depth."""
+
+    def operand(depth: int) -> str:
+        match random.randrange(5 if depth < 4 else 2):
+            case 0:
+                return random.choice("ABCD")
+            case 1:
+                return str(random.randrange(99))
+            case 2:
+                return f"({operand(depth + 1)})"
+            case 3:
+                return f"- {random.choice('ABCD')}"
+            case _:
+                return f"{operand(depth + 1)} {random.choice('+*/')} {operand(depth + 1)}"
+
+    return "".join(f"{random.choice('ABCD')} := {operand(0)}\n" for _ in range(8))
+
+
+@pytest.mark.parametrize("seed", [1796034300, 1796034301])
+def test_operators_where_there_is_no_level_of_them(toy: Grammar, seed: int) -> None:
+    """A rule of names and numbers becomes one of expressions, and no line gets a tail instead."""
+    start = _with(toy, _FLAT, "    : NAME\n    | NUMBER\n", "PLUS :", "MINUS : '-' ;\nPLUS :")
+    random = Random(seed)
+    files = tuple(CorpusFile(f"{o}.toy", _drawn(random), frozenset({o})) for o in "ABCDEFG")
+    grown = _grown(start, files).grammar
+    recognizer = Recognizer(grown)
+    assert [] == [
+        text for text in (_drawn(random) for _ in range(50)) if not recognizer.accepts(text)
+    ]
+    assert start.by_name["assignment"].text == grown.by_name["assignment"].text
+    assert not recognizer.accepts("A := B C\n")
 
 
 def test_an_operator_may_be_missing(toy: Grammar, toy_files: tuple[CorpusFile, ...]) -> None:
@@ -608,12 +653,24 @@ def _two_folds(view: GrammarView) -> Iterator[InferredStep]:
         yield InferredStep("no call", edits, ())
 
 
+def test_what_no_step_changes_is_not_folded(toy: Grammar) -> None:
+    """A rule of the start that was right stays as it is, however much shorter it could be."""
+    rules = "halt\n    : HALT NAME\n    | HALT NUMBER\n"
+    start = _with(toy, "halt\n    : HALT\n", rules)
+    texts = [f"HALT {n}\nHALT 1\n{n} := 1 / {n}\n" for n in "ABC"]
+    files = tuple(CorpusFile(t, t, frozenset({t})) for t in texts)
+    grown = _grown(start, files)
+    assert start.by_name["halt"].text == grown.grammar.by_name["halt"].text
+    other = _grown(start, files, begun=toy).grammar.by_name["halt"]
+    assert start.by_name["halt"].text != other.text
+
+
 def test_folds_behind_one_that_is_lost(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> None:
     """They were written for other places and are sought anew."""
     monkeypatch.setattr(folding, "FOLDS", (_two_folds,))
     monkeypatch.setattr(rounds, "FOLD_FILES", 0)  # only whole files show what is lost
     files = tuple(CorpusFile(n, f"{n} := 1\nHALT\n", frozenset({n})) for n in "AB")
-    grown = _grown(toy, files)
+    grown = _grown(toy, files, begun=_with(toy, "    | halt\n", ""))
     assert ["no call"] == [construct.title for construct in grown.constructs]
     assert all(Recognizer(grown.grammar).accepts(file.text) for file in files)
 
@@ -630,7 +687,7 @@ def test_folds_come_to_an_end(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> 
     """Without end a fold could be taken that leads back to a grammar of the same round."""
     monkeypatch.setattr(folding, "FOLDS", (_rotation,))
     files = tuple(CorpusFile(n, f"{n} := 1\nHALT\n", frozenset({n})) for n in "AB")
-    last = _grown(toy, files).rounds[-1]["refused"]
+    last = _grown(toy, files, begun=_with(toy, "    | halt\n", "")).rounds[-1]["refused"]
     assert ["has been so before"] == [refused["reason"] for refused in last]
 
 
@@ -648,7 +705,11 @@ def test_a_refused_fold_is_not_tried_again(toy: Grammar, monkeypatch: pytest.Mon
     """Not even when a fold that was taken since has changed the numbers of alternatives."""
     monkeypatch.setattr(folding, "FOLDS", (_refused_and_taken,))
     files = tuple(CorpusFile(n, f"{n} := 1\nHALT\n", frozenset({n})) for n in "AB")
-    first = next(done for done in _grown(toy, files).rounds if done["taken"])
+    first = next(
+        done
+        for done in _grown(toy, files, begun=_with(toy, "    | halt\n", "")).rounds
+        if done["taken"]
+    )
     titles = [[step["title"] for step in first[key]] for key in ("taken", "refused")]
     assert [["no call"], ["call in 2"]] == titles
 

@@ -1,0 +1,99 @@
+"""Tokens for characters of failing lines that the lexer has in none: signs, and texts in quotes."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import chain, count, pairwise
+from statistics import mean
+
+from grammar.parser.lexer import ERROR, Lexer
+from recovery.tuning import INFERRED_SHARE, QUOTED_SIGNS
+
+
+def unknown_token(
+    lines: Iterable[tuple[str, int]], lexer: Lexer, known: Collection[str]
+) -> tuple[str, frozenset[int], tuple[str, ...]] | None:
+    """Return the rule of the most frequent unknown token, its files, and its distinct texts.
+
+    Each of ``lines`` comes with the number of its file. A character that nearly all lines have in
+    pairs with no operand against the outside is a quote. Other ones that are always side by side
+    are one sign. The name of the token is none of the ``known`` names. The result is ``None``
+    without unknown characters.
+    """
+    having: dict[str, set[int]] = defaultdict(set)
+    paired: dict[str, list[bool]] = defaultdict(list)
+    every = list(dict.fromkeys(lines))
+    for line, file in every:
+        for sign in _signs(line, lexer):
+            having[sign].add(file)
+            for part in set(sign):
+                paired[part].append(_inside(line, part) is not None)
+    single = {sign for sign in having if len(sign) == 1}
+    for sign in [s for s in having if len(s) > 1 and single.issuperset(s)]:
+        for part in sign:
+            having[part] |= having[sign]
+        del having[sign]
+    if not having:
+        return None
+    quotes = {sign for sign in single if mean(paired[sign]) >= INFERRED_SHARE}
+    best = max(quotes or having, key=lambda s: (len(having[s]), s))
+    name = re.sub(r"\W", "_", "_".join(unicodedata.name(c, "sign") for c in best)).upper()
+    written = "'{}'".format(_escaped(best, "'"))
+    if best in quotes:
+        texts = [text for line, _ in every for text in _inside(line, best) or ()]
+        name, written = f"{name}_TEXT", f"{written} {_content(texts, best)} {written}"
+    else:
+        texts = []
+    seen = tuple(dict.fromkeys(f"{best}{text}{best}" for text in texts)) or (best,)
+    name = next(n for n in chain([name], (f"{name}_{n}" for n in count(2))) if n not in known)
+    return f"{name} : {written} ;", frozenset(having[best]), seen
+
+
+def _signs(line: str, lexer: Lexer) -> Iterator[str]:
+    """Yield the runs of unknown characters of a line that could be signs."""
+    lexemes, offsets = lexer.located(line)
+    found, end = "", 0
+    for lexeme, start in zip(lexemes, offsets, strict=True):
+        is_sign = lexer.kinds[lexeme] == ERROR and lexeme.isprintable() and not lexeme.isalnum()
+        if found and not (is_sign and start == end):
+            yield found
+            found = ""
+        found += lexeme if is_sign else ""
+        end = start + len(lexeme)
+    if found:
+        yield found
+
+
+def _inside(line: str, quote: str) -> list[str] | None:
+    """Return what a line has between quotes; ``None`` if the character is no quote there.
+
+    Then it touches an operand from the outside, or what would be quoted has one on either side.
+    """
+    outside, inside = (line.split(quote)[n::2] for n in (0, 1))
+    if len(outside) == len(inside):
+        return None
+    for left, right in pairwise(outside):
+        if left[-1:].isalnum() or right[:1].isalnum():
+            return None
+        if left.rstrip()[-1:].isalnum() and right.lstrip()[:1].isalnum():
+            return None
+    return inside
+
+
+def _content(texts: Sequence[str], quote: str) -> str:
+    """Return what a lexer rule writes for the characters of texts between quotes."""
+    characters = sorted(set("".join(texts)))
+    signs = [c for c in characters if not (c.isascii() and c.isalnum())]
+    if len(signs) > QUOTED_SIGNS:
+        return f"~[{_escaped(quote, ']-')}\\r\\n]*"
+    tests = {"A-Za-z": str.isalpha, "0-9": str.isdigit}
+    classes = [name for name, test in tests.items() if any(map(test, characters))]
+    return f"[{''.join(classes)}{_escaped(''.join(signs), ']-')}]{'*' if '' in texts else '+'}"
+
+
+def _escaped(text: str, special: str) -> str:
+    """Return the text as a lexer rule writes it, where some characters are special."""
+    return "".join(f"\\{c}" if c in f"\\{special}" else c for c in text)
