@@ -63,6 +63,7 @@ from recovery.tuning import (
     BLOCK_FILES,
     FOLD_FILES,
     FRESH_SHARE,
+    INFERRED_FILES,
     LEAST_FILES_ALONE,
     OPERAND_FILES,
     PLACES_SHOWN,
@@ -285,7 +286,8 @@ class Induction:
             fixed = {e.rule for e in found.edits if isinstance(e, _Placed)}
             edits = tuple(e for e in found.edits if e not in reserved)
             is_new = any(isinstance(e, AddToken) for e in found.edits)
-            is_wide = evidence.origins == 1 and not (is_new or fixed.isdisjoint(operands))
+            is_inner = not changed_rules(found.edits).isdisjoint(operands)
+            is_wide = evidence.origins == 1 and is_inner and not is_new
             if evidence.origins < least[0] or evidence.files < (
                 OPERAND_FILES if is_wide else least[1]
             ):
@@ -376,7 +378,7 @@ class Induction:
     ) -> AcceptedStep | None:
         """Return a step for what the lexer splits or has no token for; ``None`` without any.
 
-        A sign is first a token, and then what rules may read.
+        A sign is first a token, and then what rules may read. It needs as many files as a word.
         """
         lines: list[tuple[str, int]] = []
         for place, (file, of_file) in enumerate(zip(self.shown.files, failures, strict=True)):
@@ -395,7 +397,8 @@ class Induction:
             return None
         rule, places, seen = unknown
         added = AddRule(self.grammar.rules[-1].name, rule)
-        return self._token_step(f"{seen[0]} is a token", added, places, seen, least)
+        enough = least[0], min(INFERRED_FILES, len(self.shown.files))
+        return self._token_step(f"{seen[0]} is a token", added, places, seen, enough)
 
     def _token_step(
         self,
