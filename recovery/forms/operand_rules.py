@@ -9,6 +9,7 @@ from itertools import pairwise
 
 from grammar.notation.addresses import sequences
 from grammar.notation.model import Alternative, Element, Literal, Reference, Repeat, reached, walk
+from grammar.parser.lexer import ABSENT
 from grammar.parser.recognizer import Recognizer
 from recovery.brackets import BRACKETS
 from recovery.forms.keywords import Vocabulary
@@ -93,14 +94,17 @@ class OperandRules:
     def recursive(self) -> frozenset[str]:
         """The largest set of mutually recursive rules within a line: those of expressions.
 
-        Where no rule calls itself, those that read a name alone and another value alone.
+        Where no rule calls itself, those that read a name or another value, but no list of names.
         """
         groups = {
             frozenset(o for o in called & self.within_lines if name in self.reaches[o])
             for name, called in self.reaches.items()
             if name in called and name in self.within_lines
         }
-        values = self.matcher.value_rules & self.within_lines
+        kind_of, name = self.lexer.kind_of, self.lexer.name_kind
+        comma = kind_of.get(self.grammar.literal_tokens.get(",", ""), ABSENT)
+        listing = self.matcher.rules_for((name, comma, name))
+        values = (self.matcher.value_rules & self.within_lines) - listing
         return max(groups, key=lambda g: (len(g), sorted(g)), default=values)
 
     @cached_property

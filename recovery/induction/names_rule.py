@@ -1,17 +1,19 @@
-"""Words that are keywords in one place and names elsewhere: alternatives of a rule of names."""
+"""Rules that a start may lack: of names, which some keywords are elsewhere, and of operands."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 
 from grammar.notation.addresses import sequences
 from grammar.notation.edits import AddAlternative, AddRule, AddToken, Edit, Replace
-from grammar.notation.model import Grammar, Reference, Repeat
+from grammar.notation.model import Element, Grammar, Group, Reference, Repeat
+from grammar.parser.lexer import Lexer
 from recovery.induction.steps import AcceptedStep, Evidence
 
-#: The rule of names that is made where the token of names has none of its own.
+#: The rules that are made where the token of names, or a choice of it and values, has none.
 NAMES = "name"
+OPERANDS = "operand"
 
 
 def softened(edits: Iterable[Edit], soft: Collection[str], names: str | None) -> tuple[Edit, ...]:
@@ -30,15 +32,52 @@ def names_kept(step: AcceptedStep, used: Collection[str], names: str | None) -> 
 
 def with_names(grammar: Grammar, token: str) -> AcceptedStep:
     """Return a step that introduces a rule of names; ``token`` is the token of names."""
+
+    def is_name(element: Element) -> bool:
+        return isinstance(element, Reference) and element.name == token
+
+    return _with_rule(grammar, NAMES, [token], is_name)
+
+
+def with_operands(grammar: Grammar, lexer: Lexer) -> AcceptedStep | None:
+    """Return a step that introduces a rule of operands for choices of names and other values.
+
+    ``None`` without such a choice, or if there is a rule of that name.
+    """
+    found: set[str] = set()
+
+    def is_operand(element: Element) -> bool:
+        every = element.alternatives if isinstance(element, Group) else ()
+        singles = [a.elements[0] for a in every if len(a.elements) == 1]
+        tokens = {e.name for e in singles if isinstance(e, Reference) and e.is_token}
+        is_choice = lexer.name in tokens and len(tokens) == len(every) > 1
+        if not is_choice or not all(lexer.has_value(lexer.kind_of[token]) for token in tokens):
+            return False
+        found.update(tokens)
+        return True
+
+    every = [e for r in grammar.rules for _, sequence in sequences(r) for e in sequence.elements]
+    for element in every:
+        is_operand(element.item if isinstance(element, Repeat) else element)
+    if not found or OPERANDS in grammar.by_name:
+        return None
+    tokens = sorted(found, key=lexer.kind_of.__getitem__)
+    return _with_rule(grammar, OPERANDS, tokens, is_operand)
+
+
+def _with_rule(
+    grammar: Grammar, name: str, tokens: Sequence[str], is_one: Callable[[Element], bool]
+) -> AcceptedStep:
+    """Return a step that introduces a rule of tokens in place of all elements that are one."""
     edits: list[Edit] = []
     rules = [rule for rule in grammar.rules if not rule.is_lexer]
     for rule in rules:
         for address, sequence in sequences(rule):
             for place, element in enumerate(sequence.elements, 1):
                 often = element.operator if isinstance(element, Repeat) else ""
-                match element.item if isinstance(element, Repeat) else element:
-                    case Reference(name=name) if name == token:
-                        text = f"{NAMES}{often}"
-                        edits.append(Replace(rule.name, (*address, place), text))
-    added = AddRule(rules[-1].name, f"{NAMES}\n    : {token}\n    ;")
-    return AcceptedStep("names are a rule of their own", (added, *edits), Evidence(0, 0, 0, ()))
+                if is_one(element.item if isinstance(element, Repeat) else element):
+                    edits.append(Replace(rule.name, (*address, place), f"{name}{often}"))
+    text = "\n    | ".join(tokens)
+    added = AddRule(rules[-1].name, f"{name}\n    : {text}\n    ;")
+    title = f"{name}s are a rule of their own"
+    return AcceptedStep(title, (added, *edits), Evidence(0, 0, 0, ()))

@@ -12,13 +12,15 @@ from grammar.notation.edits import (
     AddAlternative,
     AddRule,
     Edit,
+    Insert,
     RemoveAlternative,
     Replace,
     Widen,
 )
 from grammar.notation.model import Element, Group, Literal, Reference, Repeat
 from recovery.brackets import BRACKETS
-from recovery.forms.symbols import CLOSERS
+from recovery.forms.lists import split_at_commas
+from recovery.forms.symbols import CLOSERS, Symbol
 from recovery.induction.line_symbols import PREFIXES, LineSymbols
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms
@@ -41,6 +43,7 @@ class OperandEdits:
         yield from self._words_as_names()
         yield from self._words_as_types()
         yield from self._brackets_as_operands()
+        yield from self._brackets_behind_names()
 
     def _between_operands(self) -> Iterator[InferredStep]:
         """Words and signs between two operands or ahead of one, at each level there is."""
@@ -217,6 +220,38 @@ class OperandEdits:
                     yield InferredStep(
                         f"{rule} as an operand", edits, tuple(members), breadth=breadth
                     )
+
+    def _brackets_behind_names(self) -> Iterator[InferredStep]:
+        """Return brackets, as those of an index or a call, behind operands that are a name.
+
+        Between them are operands, as many as lines have.
+        """
+        found: dict[str, list[int]] = defaultdict(list)
+        contents: dict[str, list[list[tuple[Symbol, ...]]]] = defaultdict(list)
+        for number, line in enumerate(self.at.lines):
+            tokens, index = self.at.tokens[number], line.form.index
+            is_behind = not line.is_enormous and 0 < index < len(tokens)
+            if is_behind and tokens[index - 1] == (self.at.lexer.name_kind, None):
+                close = self.at.reader.closer(tokens, index)
+                if close is not None:
+                    inside = self.at.reader.symbols(tokens[index + 1 : close])
+                    found[self.at.shown(tokens[index])].append(number)
+                    contents[self.at.shown(tokens[index])].append(split_at_commas(inside))
+        names, widest = {self.at.rules.names, self.at.lexer.name}, self.at.rules.widest
+        for sign, members in found.items():
+            item = f"{widest}?" if any(not all(items) for items in contents[sign]) else f"{widest}"
+            is_list = any(len(items) > 1 for items in contents[sign])
+            text = f"{item} (',' {item})*" if is_list else item
+            added = f"('{sign}' {text} '{BRACKETS[sign]}')?"
+            for rule in self.at.rules.ladder:
+                for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
+                    match alternative.elements:
+                        case (Reference(name=name), *more) if name in names - {rule} and all(
+                            isinstance(e, Repeat) and e.operator != "+" for e in more
+                        ):
+                            title = f"{sign} {BRACKETS[sign]} behind names in {rule}"
+                            edits = (Insert(rule, (number, 2), added),)
+                            yield InferredStep(title, edits, tuple(members))
 
     @cached_property
     def _operands(self) -> str | None:

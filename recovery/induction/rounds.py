@@ -40,7 +40,7 @@ from recovery.induction.inference import Inference
 from recovery.induction.inferred_keywords import InferredKeywords, names_read
 from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import split_literals
-from recovery.induction.names_rule import NAMES, softened, with_names
+from recovery.induction.names_rule import NAMES, softened, with_names, with_operands
 from recovery.induction.objections import EditReview
 from recovery.induction.shown_files import Failures, ShownFiles, reading
 from recovery.induction.steps import (
@@ -175,6 +175,8 @@ class Induction:
         keywords = self._words(recognizer, failures, least)
         if inner:
             whole = self._with_tokens(failures, recognizer, least)
+            if whole is None and any(failures) and OperandRules(recognizer).widest is None:
+                whole = with_operands(self.grammar, recognizer.lexer)
             if whole is not None:
                 return [whole], []
         table = FailingLines(self.shown.files, failures, keywords)

@@ -276,10 +276,10 @@ _FLAT = (
 
 
 def _drawn(random: Random) -> str:
-    """Return a program with operators, signs and brackets at any depth."""
+    """Return a program with operators, signs, brackets and calls at any depth."""
 
     def operand(depth: int) -> str:
-        match random.randrange(5 if depth < 4 else 2):
+        match random.randrange(6 if depth < 4 else 2):
             case 0:
                 return random.choice("ABCD")
             case 1:
@@ -288,6 +288,9 @@ def _drawn(random: Random) -> str:
                 return f"({operand(depth + 1)})"
             case 3:
                 return f"- {random.choice('ABCD')}"
+            case 4:
+                row = ", ".join(operand(depth + 1) for _ in range(random.randrange(3)))
+                return f"{random.choice('ABCD')}({row})"
             case _:
                 return f"{operand(depth + 1)} {random.choice('+*/')} {operand(depth + 1)}"
 
@@ -295,17 +298,21 @@ def _drawn(random: Random) -> str:
 
 
 @pytest.mark.parametrize("seed", [1796034300, 1796034301])
-def test_operators_where_there_is_no_level_of_them(toy: Grammar, seed: int) -> None:
-    """A rule of names and numbers becomes one of expressions, and no line gets a tail instead."""
-    start = _with(toy, _FLAT, "    : NAME\n    | NUMBER\n", "PLUS :", "MINUS : '-' ;\nPLUS :")
+@pytest.mark.parametrize("is_rule", [True, False])
+def test_operators_where_there_is_no_level_of_them(toy: Grammar, seed: int, is_rule: bool) -> None:
+    """A choice of names and numbers becomes a rule of expressions; no line gets a tail instead."""
+    minus = ("PLUS :", "MINUS : '-' ;\nPLUS :")
+    start = _with(toy, _FLAT, "    : NAME\n    | NUMBER\n", *minus)
+    if not is_rule:
+        text = start.text.replace("expression\n    : NAME\n    | NUMBER\n    ;\n\n", "")
+        start = read(text.replace("expression", "(NAME | NUMBER)"))
     random = Random(seed)
-    files = tuple(CorpusFile(f"{o}.toy", _drawn(random), frozenset({o})) for o in "ABCDEFG")
+    files = tuple(CorpusFile(o, _drawn(random), frozenset({o})) for o in "ABCDEFG")
     grown = _grown(start, files).grammar
-    recognizer = Recognizer(grown)
-    assert [] == [
-        text for text in (_drawn(random) for _ in range(50)) if not recognizer.accepts(text)
-    ]
-    assert start.by_name["assignment"].text == grown.by_name["assignment"].text
+    recognizer, more = Recognizer(grown), [_drawn(random) for _ in range(50)]
+    assert [] == [text for text in more if not recognizer.accepts(text)]
+    operand = "expression" if is_rule else "operand"
+    assert f"NAME ':=' {operand} ;" in " ".join(grown.by_name["assignment"].text.split())
     assert not recognizer.accepts("A := B C\n")
 
 
@@ -651,6 +658,17 @@ def _two_folds(view: GrammarView) -> Iterator[InferredStep]:
     if "call" in names:
         edits = (RemoveAlternative("simpleStatement", names.index("call") + 1),)
         yield InferredStep("no call", edits, ())
+
+
+def test_operands_of_one_origin(toy: Grammar) -> None:
+    """What may be an operand everywhere needs more than two files of one origin."""
+    texts = [f"{n} := -{n}\n" for n in "ABCDE"]
+    start = _with(toy, "PLUS :", "MINUS : '-' ;\nPLUS :")
+    for count in (2, 5):
+        files = [CorpusFile(f"o/{n}", t, frozenset("o")) for n, t in enumerate(texts[:count])]
+        files.append(CorpusFile("p/p", "HALT\n", frozenset("p")))
+        grown = _grown(start, tuple(files)).grammar
+        assert (count == 5) == Recognizer(grown).accepts("A := B * -C\n")
 
 
 def test_what_no_step_changes_is_not_folded(toy: Grammar) -> None:
