@@ -243,10 +243,10 @@ class OperandEdits:
             is_list = any(len(items) > 1 for items in contents[sign])
             text = f"{item} (',' {item})*" if is_list else item
             added = f"('{sign}' {text} '{BRACKETS[sign]}')?"
-            for rule in self.at.rules.ladder:
+            for rule in filter(lambda rule: rule not in names, self.at.rules.ladder):
                 for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
                     match alternative.elements:
-                        case (Reference(name=name), *more) if name in names - {rule} and all(
+                        case (Reference(name=name), *more) if name in names and all(
                             isinstance(e, Repeat) and e.operator != "+" for e in more
                         ):
                             title = f"{sign} {BRACKETS[sign]} behind names in {rule}"

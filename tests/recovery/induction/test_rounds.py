@@ -660,6 +660,16 @@ def _two_folds(view: GrammarView) -> Iterator[InferredStep]:
         yield InferredStep("no call", edits, ())
 
 
+def test_brackets_behind_names_are_of_operands(toy: Grammar) -> None:
+    """Names elsewhere, as those that are assigned to, get none."""
+    start = _with(toy, _FLAT, "    : NAME\n    | NUMBER\n")
+    start = apply(start, with_names(start, "NAME").edits)
+    files = tuple(CorpusFile(n, f"{n} := {n}(1)\n", frozenset({n})) for n in "ABC")
+    recognizer = Recognizer(_grown(start, files).grammar)
+    texts = ("D := E(F(2))\n", "D(1) := 2\n")
+    assert [True, False] == [recognizer.accepts(text) for text in texts]
+
+
 def test_operands_of_one_origin(toy: Grammar) -> None:
     """What may be an operand everywhere needs more than two files of one origin."""
     texts = [f"{n} := -{n}\n" for n in "ABCDE"]
