@@ -211,12 +211,17 @@ def trigger_violations(seen: Observation, motions: Sequence[EndedMotion]) -> Ite
         len(one.motion.places) for one in motions
     ):
         return
-    neighbours = zip((None, *motions), motions, (*motions[1:], None), strict=False)
-    spans = sorted(
-        _period(place, one, before if not one.begins else None, after if not one.stops else None)
-        for before, one, after in neighbours
-        for place in one.motion.places
-    )
+    known = {one.motion.number: one for one in motions}
+    spans = []
+    for one in motions:
+        number = one.motion.number
+        before, after = known.get(number - 1), known.get(number + 1)
+        for place in one.motion.places:
+            if (before is None and not one.begins) or (after is None and not one.stops):
+                return  # a blend of which half is unknown
+            row = None if one.begins else before, None if one.stops else after
+            spans.append(_period(place, one, *row))
+    spans.sort()
     for event in seen.of_kind("trigger"):
         time = event.time or 0
         fitting = [span for span in spans if span[0] - _NEAR_TIME <= time <= span[1] + _NEAR_TIME]

@@ -78,7 +78,7 @@ def _off_block(one: EndedMotion) -> str:
     if placement.mode is not IpoMode.BASE or any(part.angle is not None for part in parts):
         return ""
     start = one.poses(one.ends[:1])[0]
-    segments = _segments(start[:3, 3], parts)
+    segments = segments_of(start[:3, 3], parts)
     if segments is None:
         return ""
     every = max(len(one.tools) // _SAMPLES, 1)
@@ -134,7 +134,7 @@ def _off_ptp_block(one: EndedMotion) -> str:
 # ----------------------------------------------------------------------------- shape of segments
 
 
-def _segments(start: Array, parts: Sequence[SplinePart]) -> list[_Segment] | None:
+def segments_of(start: Array, parts: Sequence[SplinePart]) -> list[_Segment] | None:
     """Return the segments of a block; ``None`` if one is short or a target is not numeric."""
     points, middles = [start], []
     for part in parts:

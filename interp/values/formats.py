@@ -55,7 +55,7 @@ LONGEST = 2047
 #: The largest number of variables in one call.
 _MOST = 10
 
-_SPECIFICATION = re.compile(r"%([-+#0]*)([0-9]{0,4})(?:\.([0-9]{1,4}))?([a-zA-Z])")
+_PIECE = re.compile(r"([^%]+)|%%|%([-+#0]*)([0-9]{0,4})(?:\.([0-9]{1,4}))?([a-zA-Z])|%")
 
 
 class _Mismatch(Exception):
@@ -68,30 +68,18 @@ _Specification = tuple[str, int | None, int | None, str]
 
 def _pieces(pattern: str) -> Iterator[str | _Specification]:
     """Yield literal texts and specifications in order; raise `_Mismatch` at an invalid one."""
-    place = 0
-    while place < len(pattern):
-        if pattern.startswith("%%", place):
-            yield "%"
-            place += 2
-        elif pattern[place] != "%":
-            end = pattern.find("%", place)
-            end = len(pattern) if end < 0 else end
-            yield pattern[place:end]
-            place = end
-        else:
-            found = _SPECIFICATION.match(pattern, place)
-            if not found:
-                raise _Mismatch
-            flags, width, precision, letter = found.groups()
+    for found in _PIECE.finditer(pattern):
+        literal, flags, width, precision, letter = found.groups()
+        if letter:
             yield flags, _count(width), _count(precision), letter
-            place = found.end()
+        elif literal or found[0] == "%%":
+            yield literal or "%"
+        else:
+            raise _Mismatch
 
 
 def _count(digits: str | None) -> int | None:
-    number = int(digits) if digits else None
-    if number is not None and number > LONGEST:
-        raise _Mismatch
-    return number
+    return int(digits) if digits else None
 
 
 # ------------------------------------------------------------------------------- STATE
@@ -240,17 +228,16 @@ def sread(
         return None, {1: _state("CMD_ABORT", 0, 0)}
     changes: dict[int, Value] = {}
     end, word = start, "CMD_OK"
-    most = min(len(variables), _MOST)
     try:
         for piece in _pieces(text_of(pattern)):
             if isinstance(piece, str):
                 end = _skipped(given, end, piece)
-            elif len(changes) < most:
+            elif len(changes) in (len(variables), _MOST):
+                raise _Mismatch
+            else:
                 value, end = _read(given, end, piece)
                 changes[4 + len(changes)] = value
-            else:
-                raise _Mismatch
-        if len(changes) < len(variables):
+        if len(changes) != len(variables):
             raise _Mismatch
     except _Mismatch:
         word = "FMT_ERR"
@@ -279,7 +266,7 @@ def _blanks(text: str, place: int) -> int:
 def _read(text: str, place: int, specification: _Specification) -> tuple[Value, int]:
     """Return a value and the place after it."""
     flags, width, precision, letter = specification
-    if flags or precision is not None or width == 0:
+    if flags or precision is not None:
         raise _Mismatch
     if letter == "c":
         found = text[place : place + (width or 1)]
@@ -306,9 +293,7 @@ def _number(letter: str, digits: str) -> int | float | None:
         return real_of(digits)
     if letter in "di":
         return integer_of(digits)
-    if len(digits) > len("0x") + 32:  # Python refuses to convert thousands
-        return None
-    number = int(digits, 16 if letter == "x" else 10)
+    number = int(digits, 16) if letter == "x" else float(digits)  # of thousands of digits, too
     if number > 0xFFFFFFFF:
         return None
-    return number - (1 << 32) if number > INT_MAX else number
+    return int(number) - (1 << 32) if number > INT_MAX else int(number)

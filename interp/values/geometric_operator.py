@@ -67,10 +67,7 @@ def _components(pose: Pose) -> tuple[float, ...]:
     B counts as 90 degrees only within rounding errors of double precision.
     """
     (m00, m01, m02, x), (m10, m11, m12, y), (m20, _, _, z) = pose.rows
-    across, along = m10, m00
-    if math.sqrt(along * along + across * across) < _UPRIGHT:
-        across, along = 0.0, 1.0
-    a = math.atan2(across, along)
+    a = 0.0 if math.sqrt(m00 * m00 + m10 * m10) < _UPRIGHT else math.atan2(m10, m00)
     sin_a, cos_a = math.sin(a), math.cos(a)
     b = math.atan2(-m20, cos_a * m00 + sin_a * m10)
     c = math.atan2(sin_a * m02 - cos_a * m12, cos_a * m11 - sin_a * m01)

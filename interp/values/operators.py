@@ -74,8 +74,7 @@ class Selection:
 def _divided(left: int, right: int) -> int:
     if right == 0:
         raise fault("division_by_zero")
-    quotient = abs(left) // abs(right)
-    return integer(quotient if (left < 0) == (right < 0) else -quotient)
+    return integer(int(left / right))  # a double rounds no quotient of two INT up to a whole number
 
 
 def _quotient(left: float, right: float) -> float:

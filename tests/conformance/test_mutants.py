@@ -245,7 +245,7 @@ def test_cases_that_state_what_the_code_cites_are_tried() -> None:
     ("case", "function", "was", "now", "fate"),
     [
         ("data/int_division", "values.operators:_divided", "right == 0", "right != 0", "red"),
-        ("data/int_division", "values.operators:_divided", "left < 0", "left <= 0", "equivalent"),
+        ("data/round_negative", "values.values:rounded", "0.5", "-0.5", "equivalent"),
         (
             "io/analog_range",
             "controller.state.signals:Signals._put_analog",
@@ -330,7 +330,7 @@ def test_a_mutant_that_makes_a_case_fail() -> None:
 def test_a_case_that_takes_too_long_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
     """So much computing is more than any case may take where it may take next to none."""
     monkeypatch.setattr(trial, "_SECONDS", 1e-6)
-    mutant = _mutant("interp.values.operators", "_divided", "left < 0", "left <= 0")
+    mutant = _mutant("interp.values.operators", "_divided", "left / right", "left * right")
     (found,) = try_faults([mutant], reach_of([_case("data/int_division")], _SETUP))
     assert ("red", "data/int_division") == (found.fate, found.case)
     assert "seconds of computing" in found.why
@@ -412,7 +412,7 @@ def test_a_search_is_tried_on_all_cases() -> None:
     module = "interp.robot.planning.profile"
     cases = [_case(name) for name in ("motion/acc_cp", "motion/lin_speed", "motion/lin_end_pose")]
     counts = []
-    for was, now in (("dt * jerk", "dt / jerk"), ("position <= 0.0", "position > 0.0")):
+    for was, now in (("dt * jerk", "dt / jerk"), ("position >= self.length", "position < self.length")):
         mutant = _mutant(module, "SpeedProfile.time_at", was, now)
         reaches = [Reach(case, {module: frozenset({mutant.line})}, 1) for case in cases]
         is_search = bool(search_reason(mutant))

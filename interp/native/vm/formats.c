@@ -380,7 +380,7 @@ static int32_t take_unsigned(struct krl_letters text, uint32_t base, krl_cell *v
     for (; hexadecimal(code_at(text, place)) < base; place++)
         number = number > UINT32_MAX ? number : number * base + hexadecimal(code_at(text, place));
     *value = krl_of_int((int32_t)(uint32_t)number);
-    return number > UINT32_MAX || place > 2 + 32 ? 0 : place;
+    return number > UINT32_MAX ? 0 : place;
 }
 
 /* Reads a value by a conversion. Returns the place after it, or -1 if there is none. */

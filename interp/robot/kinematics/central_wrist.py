@@ -133,8 +133,9 @@ class CentralWrist:
         a5 = np.arctan2(sine, wrist[:, 2, 2])
         there = np.abs(np.sin((a4 - own) / 2.0)) + np.abs(a5 - bent)
         over = np.abs(np.cos((a4 - own) / 2.0)) + np.abs(a5 + bent)
-        sign = np.where(over < there, -1.0, 1.0)
-        a4 = np.where(over < there, a4 + math.pi, a4)
+        is_flipped = over < there
+        sign = np.where(is_flipped, -1.0, 1.0)
+        a4 = np.where(is_flipped, a4 + math.pi, a4)
         a4 = np.where(sine < _UNDETERMINED, own, a4)
         found = self._degrees(main, a4, sign * a5, wrist)
         return nearest_turns(found, references)

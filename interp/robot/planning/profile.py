@@ -74,9 +74,7 @@ class SpeedProfile:
         )
 
     def time_at(self, position: float) -> float:
-        """Return the first time at which a position is reached, or the time of the nearest end."""
-        if position <= 0.0:
-            return 0.0
+        """Return the first time at which a position above 0 is reached, or that of the end."""
         if position >= self.length:
             return self.duration
         (origin, start, speed, acceleration, jerk), (end, *_) = next(

@@ -17,7 +17,6 @@ from interp.robot.kinematics.kinematics import Array
 from interp.robot.planning.junctions import AT_REST, SAME_CURVE, STOP, JoinedStretch
 from interp.robot.planning.limits import CurveLimits, Stretch
 from interp.robot.planning.profile import SpeedProfile
-from interp.robot.planning.ramps import Bounds
 from interp.robot.planning.schedule import schedule
 from interp.robot.planning.tracks import Piece
 from interp.values.faults import Fault
@@ -193,12 +192,11 @@ def _slower(piece: Piece, share: float) -> Piece:
     stretches = []
     for stretch in piece.limits.stretches:
         normal = stretch.normal
-        slower = Bounds(
-            normal.velocity * share, normal.acceleration * share**2, normal.jerk * share**3
+        slower = replace(
+            normal, acceleration=normal.acceleration * share**2, jerk=normal.jerk * share**3
         )
-        hard = stretch.hard.up_to(slower.velocity)
-        programmed = stretch.programmed * share
-        stretches.append(replace(stretch, programmed=programmed, normal=slower, hard=hard))
+        programmed = min(stretch.programmed, normal.velocity) * share
+        stretches.append(replace(stretch, programmed=programmed, normal=slower))
     return replace(piece, limits=CurveLimits(tuple(stretches)))
 
 
