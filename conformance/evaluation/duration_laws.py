@@ -181,8 +181,9 @@ def _time_block_violations(one: EndedMotion) -> Iterator[Violation]:
 def _shares_of_time(motion: Motion) -> Iterator[tuple[int, int, float]]:
     """Yield the segments between which each part of a TIME_BLOCK lies, and its seconds."""
     begin, parts = 0, list[tuple[int, int, float]]()
-    for number, owner in enumerate((*motion.parts, motion)):
-        for mark in owner.ranges:
+    written = [*(part.ranges for part in motion.parts), motion.ranges]
+    for number, marks in enumerate(written):
+        for mark in marks:
             if mark.keyword != "TIME_BLOCK":
                 continue
             if mark.edge == "PART":

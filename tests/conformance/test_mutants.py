@@ -412,7 +412,8 @@ def test_a_search_is_tried_on_all_cases() -> None:
     module = "interp.robot.planning.profile"
     cases = [_case(name) for name in ("motion/acc_cp", "motion/lin_speed", "motion/lin_end_pose")]
     counts = []
-    for was, now in (("dt * jerk", "dt / jerk"), ("position >= self.length", "position < self.length")):
+    beyond = "position >= self.length", "position < self.length"
+    for was, now in (("dt * jerk", "dt / jerk"), beyond):
         mutant = _mutant(module, "SpeedProfile.time_at", was, now)
         reaches = [Reach(case, {module: frozenset({mutant.line})}, 1) for case in cases]
         is_search = bool(search_reason(mutant))

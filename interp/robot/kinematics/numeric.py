@@ -26,8 +26,9 @@ _ROUNDS = 60
 _NEAR_ROUNDS = 25
 _HOPEFUL = 20, 0.05
 """A start is abandoned after so many rounds unless its error is below the second number."""
-_MET = 1e-11
-"""The norm of the error, in fractions of the size and radians, at which a pose is reached."""
+_MET = 1e-8
+"""The norm of the error, in fractions of the size and radians, from which one step more reaches a
+pose to rounding: curves through the samples of a path need their third differences."""
 _LEAST_DAMPING = 1e-13
 _OFF = 0.002  # radians by which an arm of fewer joints may miss an orientation
 _TURN = 1e-9  # degrees of rounding
@@ -148,22 +149,22 @@ class NumericKinematics:
             is_left = error[busy] > _MET
             if turn >= _HOPEFUL[0]:
                 is_left &= error[busy] < _HOPEFUL[1]
-            busy, missing, slopes = busy[is_left], missing[is_left], slopes[is_left]
-            if not len(busy):
-                break
             damping = 0.5 * (missing**2).sum(axis=1) + _LEAST_DAMPING
             normal = np.swapaxes(slopes, 1, 2) @ slopes
             normal += damping[:, None, None] * np.eye(len(self._free))
             push = np.swapaxes(slopes, 1, 2) @ missing[:, :, None]
             step = np.linalg.solve(normal, push)[:, :, 0] * self._scale
             theta[np.ix_(busy, self._free)] += step
+            busy = busy[is_left]
+            if not len(busy):
+                break
         theta[~self._is_met(poses, theta, error)] = math.nan
         return theta
 
     def _is_met(self, poses: Array, theta: Array, error: Array) -> npt.NDArray[np.bool_]:
         """Return which joints reach their poses; fewer than six have a larger tolerance."""
         if len(self._free) == ROBOT_AXES:
-            return error < 1e3 * _MET
+            return error <= _MET
         missing = self._missing(poses, self._poses(theta)[0])
         near = np.linalg.norm(missing[:, :3], axis=1) < _OFF * 1e-2
         met: npt.NDArray[np.bool_] = near & (np.linalg.norm(missing[:, 3:], axis=1) < _OFF)
