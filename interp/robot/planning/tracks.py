@@ -123,10 +123,17 @@ class Tracks:
             raise Fault(
                 "orientation", "#IGNORE is not allowed here", number=3094, rules=("ORI-03",)
             )
-        if not is_cp:
-            return self._ptp(motion, before)
-        is_circle = motion.kind == "SCIRC" or (motion.kind == "CIRC" and not is_after_abort)
-        return (self._circle if is_circle else self._line)(motion, before)
+        match motion.kind:
+            case "PTP" | "SPTP":
+                return self._ptp(motion, before)
+            case "LIN" | "SLIN":
+                return self._line(motion, before)
+            case "CIRC" | "SCIRC":
+                if is_after_abort and motion.kind == "CIRC":
+                    return self._line(motion, before)
+                return self._circle(motion, before)
+            case _:
+                raise Fault("motion", f"{motion.kind} is no motion of this arm")
 
     # ------------------------------------------------------------------------------------ kinds
 
