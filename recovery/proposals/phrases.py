@@ -195,17 +195,21 @@ class Phraser:
         return tuple(symbols)
 
     def usual_for(self, spans: Sequence[tuple[Token, ...]], before: Before) -> str | None:
-        """Return the rule that is usual at such a place if it reads all the spans, or ``None``."""
+        """Return the symbol that is usual at such a place if it reads all the spans, or ``None``."""
         if any(keyword is not None for span in spans for _, keyword in span):
             return None
         kinds = {tuple(kind for kind, _ in span) for span in spans}
         usual = self.collocations.usual(before)
-        fitting = [
-            rule
-            for rule in usual
-            if rule in self._wider and all(rule in self.matcher.rules_for(k) for k in kinds)
-        ]
-        return min(fitting, key=lambda r: (-usual[r], len(self._wider[r]), r), default=None)
+        fitting = [symbol for symbol in usual if all(self._reads(symbol, k) for k in kinds)]
+        return min(
+            fitting, key=lambda s: (-usual[s], len(self._wider.get(s, ())), s), default=None
+        )
+
+    def _reads(self, symbol: str, kinds: tuple[int, ...]) -> bool:
+        """Return whether a rule or token reads these tokens as a whole."""
+        is_rule = symbol in self._wider
+        alone = (self.recognizer.lexer.kind_of.get(symbol),)
+        return symbol in self.matcher.rules_for(kinds) if is_rule else kinds == alone
 
     def _levels(
         self, part: tuple[Token, ...], near: frozenset[str] = frozenset()
