@@ -290,8 +290,11 @@ FORM_SYMBOLS = 4
 #: Edits that a merged cause may have: a person has to see at a glance that they are one. Measured:
 #: 54 clusters with 1.
 MOST_MERGED_EDITS = 3
-#: Proposals whose alternatives are gathered in one: a missing rule has as many. Not measured.
-MOST_GATHERED = 16
+#: Proposals of a cause that are made in further places, places of each, and the least share of its
+#: lines that they leave for that. Not measured.
+MOST_EXTENDED = 3
+MOST_PLACES = 6
+LEAST_LEFT = 0.05
 #: Causes up to which they are completed: where there are more, lines fail for several, and more
 #: edits would mix them; proposals of each, in different rules; how often what one leaves is sought;
 #: and groups of lines that are searched each time. Bound on time.

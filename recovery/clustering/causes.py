@@ -9,8 +9,8 @@ At the end, causes are merged if one edit repairs the lines of both: an edit sou
 whose lines begin with the same word, or one made from the edits of two causes
 (`recovery.clustering.edit_merging`). Causes whose lines fail for the same reason
 (`recovery.clustering.reason`) are merged as well. Where few causes are left, their best proposals
-are completed (`recovery.clustering.completion`), else alternatives that several proposals add to
-one rule are gathered.
+are completed (`recovery.clustering.completion`), else made in further places
+(`recovery.clustering.more_places`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from functools import partial
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
-from recovery.clustering.completion import added_alternatives, as_one_rule, completed
+from recovery.clustering.completion import added_alternatives, completed
 from recovery.clustering.edit_merging import (
     are_one_change,
     combined_edits,
@@ -32,6 +32,7 @@ from recovery.clustering.edit_merging import (
 )
 from recovery.clustering.edit_trial import changed_rules
 from recovery.clustering.file_trial import FileTrial
+from recovery.clustering.more_places import with_more_places
 from recovery.clustering.reason import Reason
 from recovery.clustering.regression import ParsedFiles, no_parsed_files
 from recovery.clustering.search import CauseSearch
@@ -39,13 +40,11 @@ from recovery.proposals.candidates import Candidate
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import (
-    BREADTH_FACTOR,
     CAUSES_PER_GROUP,
     FORM_SYMBOLS,
     HEAVY_GROUPS,
     MOST_CAUSES_COMPLETED,
     MOST_COMPARED,
-    MOST_GATHERED,
     MOST_PROPOSALS,
 )
 from support.gc_pause import gc_paused
@@ -78,7 +77,7 @@ def find_causes(
             on_done(1)
         causes = merged_by_first_word(search, causes)
     causes = merged_by_reason(search, merged_by_edits(search, causes), reasons)
-    more = completed if len(causes) <= MOST_CAUSES_COMPLETED else with_gathered
+    more = completed if len(causes) <= MOST_CAUSES_COMPLETED else with_more_places
     causes = [more(search, cause) for cause in causes]
     return [replace(cause, proposals=cause.proposals[:MOST_PROPOSALS]) for cause in causes]
 
@@ -195,67 +194,6 @@ def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
     return Cause(tuple(sorted(lines)), tuple(search.ranked(list(found.values()), lines)))
 
 
-def with_gathered(search: CauseSearch, cause: Cause) -> Cause:
-    """Return a cause with what its proposals do together, if anything."""
-    more = _gathered(search, cause.proposals, frozenset(cause.lines))
-    if not more:
-        return cause
-    return replace(cause, proposals=tuple(search.ranked([*cause.proposals, *more], cause.lines)))
-
-
-def _worth(search: CauseSearch, lines: frozenset[int], proposal: Proposal) -> float:
-    """Return the weight of the lines that a proposal repairs, reduced for its breadth."""
-    mended = sum(search.weights[n] for n in proposal.mended & lines)
-    return mended * BREADTH_FACTOR**proposal.breadth
-
-
-def _gathered(
-    search: CauseSearch, proposals: Sequence[Proposal], lines: frozenset[int]
-) -> list[Proposal]:
-    """Return one proposal with the alternatives that several of them add; none if one does as well.
-
-    Where a rule with several alternatives is missing, each of these is another proposal. They are
-    missing at one place, so first come the proposals for one rule: the rule in which they repair
-    most together. No words are reserved but those of the best proposal, and no more negatives are
-    accepted.
-    """
-    best = max(proposals, key=partial(_worth, search, lines), default=None)
-    of_rule: dict[str, list[Proposal]] = defaultdict(list)
-    for proposal in proposals:
-        edit = proposal.edits[-1]
-        if isinstance(edit, AddAlternative) and best and _words(proposal) <= _words(best):
-            of_rule[edit.rule].append(proposal)
-    covers = {rule: _cover(search, some, lines) for rule, some in of_rule.items()}
-    if not any(covers.values()):
-        return []
-    rule = max(covers, key=lambda rule: sum(_worth(search, lines, p) for p in covers[rule]))
-    chosen = covers[rule]
-    left = lines.difference(*(proposal.mended for proposal in chosen))
-    others = _cover(search, [p for some in of_rule.values() for p in some], left)
-    whole = chosen[0]
-    for proposal in (*chosen[1:], *others)[:MOST_GATHERED]:
-        edits = combined_edits(proposal.edits, whole.edits)  # the first one remains the last edit
-        both = search.proposal(edits, max(whole.breadth, proposal.breadth) + 1)
-        is_more = both.mended & lines > whole.mended & lines
-        if is_more and both.accepts_negatives <= whole.accepts_negatives:
-            whole = both
-    return [] if whole is chosen[0] else [as_one_rule(search, whole)]
-
-
-def _cover(
-    search: CauseSearch, proposals: Sequence[Proposal], lines: frozenset[int]
-) -> list[Proposal]:
-    """Return the proposals that repair most of the lines (greedy set cover)."""
-    cover: list[Proposal] = []
-    while proposals:
-        further = max(proposals, key=partial(_worth, search, lines))
-        if not further.mended & lines:
-            break
-        cover.append(further)
-        lines -= further.mended
-    return cover
-
-
 def _words(proposal: Proposal) -> frozenset[str]:
     """Return the words that a proposal reserves."""
     return frozenset(edit.name for edit in proposal.edits if isinstance(edit, AddToken))
@@ -280,6 +218,8 @@ def _as_one(search: CauseSearch, first: Cause, second: Cause) -> Cause | None:
     one, other = first.proposals[0], second.proposals[0]
     negatives = one.accepts_negatives + other.accepts_negatives
     mended = one.mended | other.mended
+    if not one.mended or not other.mended:
+        return None  # any edit of the same rule would do as much
     lines = tuple(sorted({*first.lines, *second.lines}))
     for edits, breadth in _for_both(search.finder.profile, one, other):
         if search.trial.result(edits, mended).mended < mended:

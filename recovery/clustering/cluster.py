@@ -153,7 +153,7 @@ class _FailingLines:
         finder = FailureFinder(self.recognizer)
         self.contexts = [self._context(finder, f.before, f.kinds[: f.index]) for f in found.forms]
         lexer = self.recognizer.lexer
-        suspected = SuspectedKeywords(lexer, _DirectFailures(found))
+        suspected = SuspectedKeywords(self.recognizer, _DirectFailures(found))
         numbers: dict[LinePattern, int] = {}
         signatures: list[Signature] = []
         self.lines_of: dict[str, array[int]] = {}

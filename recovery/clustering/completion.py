@@ -150,11 +150,16 @@ def _further(
     heaviest = sorted(groups.values(), key=lambda g: (-sum(inner.weights[n] for n in g), g))
     own = changed_rules(proposal.edits)
     for some, group in product((own, rules), heaviest[:MOST_GROUPS_COMPLETED]):
-        cause = inner.best_for(group, some)
+        cause = inner.best_for(group, partial(_are_of, some))
         for further in cause.proposals if cause else ():
             edits = continued(grammar, proposal.edits, further.edits)
             if edits is not None:
                 yield search.proposal(edits, max(proposal.breadth, further.breadth) + 1)
+
+
+def _are_of(rules: frozenset[str], edits: Sequence[Edit]) -> bool:
+    """Return whether edits change only these rules, and reserve no word."""
+    return rules.issuperset(getattr(edit, "rule", "") for edit in edits)
 
 
 # ------------------------------------------------------------------------------- edits as one

@@ -7,7 +7,7 @@ lines without a cause. docs/recovery.md says how they are ranked.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
@@ -49,6 +49,10 @@ from recovery.tuning import (
 )
 
 
+#: Which edits are sought.
+Wanted = Callable[[Sequence[Edit]], bool]
+
+
 class CauseSearch:
     """Searches for edits that repair lines of one grammar."""
 
@@ -79,13 +83,13 @@ class CauseSearch:
             self.same_token[self._token(number)].append(number)
             self.same_lead[lines[number].words()[0]].append(number)
 
-    def best_for(self, group: Sequence[int], rules: frozenset[str] | None = None) -> Cause | None:
+    def best_for(self, group: Sequence[int], wanted: Wanted | None = None) -> Cause | None:
         """Return the cause of the heaviest lines of a group, or ``None`` if no edit helps.
 
-        Where ``rules`` are given, it is sought among the edits of these, which reserve no word.
+        It is sought among the edits that are ``wanted``, if that is given.
         """
         members = self._seek(group)
-        proposals = self._proposals(group, rules)
+        proposals = self._proposals(group, wanted)
         for place, best in enumerate(proposals):
             # a line that only advances has its first cause here, and another one later
             taken = (best.mended & self.open) | (best.advanced & members)
@@ -96,7 +100,8 @@ class CauseSearch:
     def ranked(self, proposals: Sequence[Proposal], lines: Collection[int]) -> list[Proposal]:
         """Return proposals for some or all of these lines, the best for all of them first."""
         self.open = set(self._seek(lines))
-        return self._ranked(proposals, sorted(lines, key=lambda n: (-self.weights[n], n)))
+        useful = [proposal for proposal in proposals if self._gain(proposal)]
+        return self._ranked(useful, sorted(lines, key=lambda n: (-self.weights[n], n)))
 
     def _seek(self, lines: Collection[int]) -> frozenset[int]:
         """Make the lines those in question; return them."""
@@ -104,11 +109,13 @@ class CauseSearch:
         self._has_words = all(self.lines[n].keywords for n in lines)
         return self._sought
 
-    def best_from_scratch(self, lines: Sequence[int]) -> Cause | None:
+    def best_from_scratch(
+        self, lines: Sequence[int], wanted: Wanted | None = None
+    ) -> Cause | None:
         """Return the cause of the heaviest of these lines, as if there were no others."""
         self.is_thorough = True
         self.open = set(lines)
-        return self.best_for(lines)
+        return self.best_for(lines, wanted)
 
     def proposal(self, edits: tuple[Edit, ...], breadth: int) -> Proposal:
         """Return the edits with their result on all lines, whatever the causes of these."""
@@ -135,7 +142,7 @@ class CauseSearch:
         best = replace(best, mended=best.mended | more)
         return Cause(tuple(sorted({*cause.lines, *more})), (best, *cause.proposals[1:]))
 
-    def _proposals(self, group: Sequence[int], rules: frozenset[str] | None) -> list[Proposal]:
+    def _proposals(self, group: Sequence[int], wanted: Wanted | None) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))
         specimens = _spread(heavy, SPECIMENS if self.is_thorough else 1)
         most = MOST_TRIED if self.is_thorough else MOST_TRIED_LIGHT
@@ -146,8 +153,8 @@ class CauseSearch:
             (*near, *_spread(alike, VARIED_LINES), *_spread(led_alike, VARIED_LINES))
         )
         tried = self.finder.find_common([self.lines[n] for n in varied], most, len(near))
-        if rules is not None:
-            tried = [c for c in tried if rules.issuperset(getattr(e, "rule", "") for e in c.edits)]
+        if wanted is not None:
+            tried = [candidate for candidate in tried if wanted(candidate.edits)]
         sample = set(specimens) | set(_spread(heavy, SAMPLE_LINES))
         sample |= set(_spread(alike, SAMPLE_LINES)) | varied.keys()
         first = self._tried(tried, most, sample)
@@ -156,7 +163,7 @@ class CauseSearch:
             for candidate in merged_as_choice([c for c, o in first if o.mended])
         ]
         proposals = []
-        blocks = [] if rules is not None else self._blocks(specimens[0], heavy)
+        blocks = [] if wanted is not None else self._blocks(specimens[0], heavy)
         for candidate, negatives in (*blocks, *self._kept(first)):
             result = self.trial.result(candidate.edits, self.open)
             edits, breadth = candidate.edits, candidate.breadth

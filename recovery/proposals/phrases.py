@@ -7,12 +7,13 @@ which is right, so all of them are proposed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
 from itertools import islice, product
 
 from recovery.forms.rule_matcher import RuleMatcher
 from recovery.forms.symbols import Token
+from recovery.proposals.bracket_groups import BracketGroups
 from recovery.proposals.collocations import Before, Collocations, symbols_in
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.segmentation import Segmenter
@@ -36,6 +37,7 @@ class Phraser:
         self.collocations = Collocations(recognizer)
         self.matcher = RuleMatcher(recognizer)
         self.segmenter = Segmenter(self.matcher)
+        self.groups = BracketGroups(self.matcher)
         self._breadths: dict[tuple[str, ...], int] = {}
         self._known_levels: dict[tuple[frozenset[str], frozenset[str]], tuple[str, ...]] = {}
 
@@ -167,7 +169,7 @@ class Phraser:
         if parts is None:
             return
         plain = [self.matcher.text(word) for word in words]
-        if all(plain):
+        if all(plain) and not any(map(self.groups.rule_of, words)):
             tokens = tuple(token for token in plain if token)
             yield tokens
             yield tuple(self.collocations.written_by.get(token, token) for token in tokens)
@@ -200,16 +202,29 @@ class Phraser:
             return None
         kinds = {tuple(kind for kind, _ in span) for span in spans}
         usual = self.collocations.usual(before)
-        fitting = [symbol for symbol in usual if all(self._reads(symbol, k) for k in kinds)]
-        return min(
-            fitting, key=lambda s: (-usual[s], len(self._wider.get(s, ())), s), default=None
+        fitting = {symbol: self._fitted(symbol, kinds) for symbol in usual}
+        best = min(
+            (symbol for symbol in usual if fitting[symbol]),
+            key=lambda s: (-usual[s], len(self._wider.get(s, ())), s),
+            default=None,
         )
+        return best and fitting[best]
 
-    def _reads(self, symbol: str, kinds: tuple[int, ...]) -> bool:
-        """Return whether a rule or token reads these tokens as a whole."""
-        is_rule = symbol in self._wider
-        alone = (self.recognizer.lexer.kind_of.get(symbol),)
-        return symbol in self.matcher.rules_for(kinds) if is_rule else kinds == alone
+    def _fitted(self, symbol: str, spans: Collection[tuple[int, ...]]) -> str | None:
+        """Return the rule or token if it reads all the spans, a token with the groups behind it."""
+        if symbol in self._wider:
+            return symbol if self._reads_all(symbol, spans) else None
+        kind = self.recognizer.lexer.kind_of.get(symbol)
+        if any(span[0] != kind for span in spans):
+            return None
+        groups = {span[1:] for span in spans}
+        behind = [rule for rule in self.groups.rules.values() if self._reads_all(rule, groups - {()})]
+        if groups == {()}:
+            return symbol
+        return f"{symbol} {behind[0]}{'?' if () in groups else ''}" if behind else None
+
+    def _reads_all(self, rule: str, spans: Collection[tuple[int, ...]]) -> bool:
+        return all(rule in self.matcher.rules_for(span) for span in spans)
 
     def _levels(
         self, part: tuple[Token, ...], near: frozenset[str] = frozenset()

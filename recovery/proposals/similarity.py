@@ -35,6 +35,7 @@ class Similarity:
         self.profile = profile
         self.vocabulary = profile.vocabulary
         self._classes: dict[str, list[list[str]]] = {}  # of the symbols of each alternative
+        self._written: dict[str, list[list[str]]] = {}  # the elements of each
         self._names: dict[str, list[list[str]]] = {}  # the symbols themselves
         self._leading_words: dict[str, frozenset[str]] = {}
 
@@ -49,6 +50,7 @@ class Similarity:
             found = self.profile.grammar.by_name[rule]
             written = [list(map(found.source_of, a.elements)) for a in found.alternatives]
             self._classes[rule] = [list(map(self._class_of, some)) for some in written]
+            self._written[rule] = written
             self._names[rule] = [_NAMES.findall(" ".join(some)) for some in written]
         known = self._classes[rule]
         new = [self._class_of(symbol) for symbol in symbols]
@@ -72,7 +74,9 @@ class Similarity:
             )
         leads = self._leads(rule)
         if not leads.isdisjoint(choices(symbols[0])):
-            return -STRONG_SIMILARITY_STEPS
+            # what goes on alike is another form of the same, which an edit of that shows better
+            alike = any(some[1:2] == list(symbols[1:2]) for some in self._written[rule])
+            return 0 if alike else -STRONG_SIMILARITY_STEPS
         if len(leads) == 1 and "" not in leads:
             return STRONG_SIMILARITY_STEPS
         best = _likeness(new, known)

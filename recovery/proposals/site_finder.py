@@ -61,7 +61,7 @@ class EditSiteFinder:
     def find(self, line: LinePattern) -> Iterator[EditSite | RankedEdits]:
         """Yield the sites of a line, and complete edits; with duplicates."""
         recognizer, form = self.recognizer, line.form
-        words = line.words()
+        words = self.phraser.groups.as_read(line.words(), form.index)
         self._resumed.clear()
         before = recognizer.restore(form.before)
         starts = {form.index}
@@ -342,8 +342,7 @@ class EditSiteFinder:
             yield EditSite("alternative", called, (1, 1), tuple(words), rank)
         leading = place[-1] == 1 and self.vocabulary.is_keyword(element)
         closing = place[-1] == len(elements) and self.vocabulary.is_keyword(element)
-        lexer = self.recognizer.lexer
-        word = len(words) == 1 and (words[0][1] or lexer.is_keyword(words[0][0]))
+        word = len(words) == 1 and self._is_new_word(words[0])
         if len(place) > 2 and len(elements) == 1:
             return  # the same as with the group it is in
         if called and profile.callers[called] == {rule}:
@@ -362,6 +361,14 @@ class EditSiteFinder:
         if self.vocabulary.is_keyword(element) and (len(words) > 1 or closing):
             rank += UNLIKELY_COST
         yield EditSite("widen", rule, place, tuple(words), rank)
+
+    def _is_new_word(self, token: Token) -> bool:
+        """Return whether a token is a keyword that no rule uses."""
+        kind, keyword = token
+        lexer = self.recognizer.lexer
+        return keyword is not None or (
+            lexer.is_keyword(kind) and not self.vocabulary.is_written(lexer.names[kind])
+        )
 
     def _omissions(
         self,
@@ -391,13 +398,11 @@ class EditSiteFinder:
                 if failed is None or failed > 1:
                     rank = self.profile.width(rule) + SITE_COST + count
                     left_out = sequence.elements[place[-1] - 1 : last[-1] - 1]
-                    ends = (left_out[0] is sequence.elements[0]) or last[-1] > len(
-                        sequence.elements
-                    )
-                    if ends and any(map(self.vocabulary.is_keyword, left_out)):
-                        rank += (
-                            2 * UNLIKELY_COST
-                        )  # the words that begin and close a line or a block
+                    is_end = place[-1] == 1 or last[-1] > len(sequence.elements)
+                    if is_end and any(map(self.vocabulary.is_keyword, left_out)):
+                        if rule in self.profile.blocks:
+                            break  # the words that open and close a block
+                        rank += 0 if failed is None else 2 * UNLIKELY_COST
                     yield rank, (MakeOptional(rule, place, count),)
                     break
 

@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 
 from grammar.parser.failures import Form
 from grammar.parser.lexer import ERROR, Lexer
+from grammar.parser.recognizer import Recognizer
 from recovery.survey.failing_line import FailingLine
 from recovery.tuning import (
     SUSPECTED_ALONE,
@@ -87,17 +88,25 @@ def _add(known: set[str], one: str, most: int) -> None:
 class SuspectedKeywords:
     """The names that failing lines under one grammar show to be keywords."""
 
-    def __init__(self, lexer: Lexer, failures: Iterable[_Failure]) -> None:
-        """``failures`` are all of a survey, with the digests of their files; read twice."""
-        self.lexer = lexer
+    def __init__(self, recognizer: Recognizer, failures: Iterable[_Failure]) -> None:
+        """``failures`` are all of a survey, with the digests of their files; read repeatedly."""
+        self.lexer = recognizer.lexer
+        self._recognizer = recognizer
+        self._left_out: dict[Form, bool] = {}
         self._sole = self._sole_words(failures)
+        self._often: Counter[str] = Counter()
+        for _, failed, form in failures:
+            self._often.update(word for run in self._runs(failed, form) for _, word in run)
         found: dict[str, _Uses] = defaultdict(_Uses)
         for digest, failed, form in failures:
-            for place, word in names_of_line(failed.words, form.kinds, lexer):
-                if self._stands_out(form, place, word):
+            odd = set()
+            for run in self._runs(failed, form):
+                place, word = self._strongest(run)
+                odd.update(place for place, _ in run)
+                if self._explains(run, form):
                     self._count(found[word], digest, failed.words, form.kinds, place)
-                else:
-                    found[word].plain += 1
+            for place, word in names_of_line(failed.words, form.kinds, self.lexer):
+                found[word].plain += place not in odd
         self._words = frozenset(
             word
             for word, uses in found.items()
@@ -106,11 +115,33 @@ class SuspectedKeywords:
 
     def of_line(self, failed: FailingLine, form: Form) -> tuple[tuple[int, str], ...]:
         """Return the suspected keywords on a failing line, with their indices."""
+        strongest = {self._strongest(run) for run in self._runs(failed, form)}
         return tuple(
             (place, word)
             for place, word in names_of_line(failed.words, form.kinds, self.lexer)
             if word in self._words
-            and (place == form.index > 0 or self._stands_out(form, place, word))
+            and (place == form.index > 0 or (place, word) in strongest)
+        )
+
+    def _runs(self, failed: FailingLine, form: Form) -> list[list[tuple[int, str]]]:
+        """Return the names of a line that are used like keywords, those side by side together."""
+        runs: list[list[tuple[int, str]]] = []
+        for place, word in names_of_line(failed.words, form.kinds, self.lexer):
+            if self._stands_out(form, place, word):
+                if not runs or runs[-1][-1][0] < place - 1:
+                    runs.append([])
+                runs[-1].append((place, word))
+        return runs
+
+    def _strongest(self, run: Sequence[tuple[int, str]]) -> tuple[int, str]:
+        """Return the name of a run that most lines have: one word too many explains the others."""
+        return max(run, key=lambda name: (self._often[name[1]], -name[0]))
+
+    def _explains(self, run: Sequence[tuple[int, str]], form: Form) -> bool:
+        """Return whether a line may fail because of a run of names: not if all of it was read."""
+        last = run[-1][0]
+        return last >= form.index or (
+            last == form.index - 1 and not self._sign(form.kinds, form.index)
         )
 
     def _sole_words(self, failures: Iterable[_Failure]) -> frozenset[str]:
@@ -165,7 +196,18 @@ class SuspectedKeywords:
             self._is_operand(form.kinds, place - 1)
             or self._is_operand(form.kinds, place + 1)
             or self._sign(form.kinds, place - 1) == ":"
+            or (place == form.index - 1 and self._may_be_left_out(form))
         )
+
+    def _may_be_left_out(self, form: Form) -> bool:
+        """Return whether a line that fails at a keyword can be read on without the name before."""
+        found = self._left_out.get(form)
+        if found is None:
+            kinds = (*form.kinds[: form.index - 1], *form.kinds[form.index : form.index + 2])
+            found = self._left_out[form] = self.lexer.is_keyword(form.kinds[form.index]) and (
+                self._recognizer.run(self._recognizer.restore(form.before), kinds)[1] is None
+            )
+        return found
 
     def _sign(self, kinds: Sequence[int], place: int) -> str:
         """Return the sign at an index; empty if there is none."""
