@@ -164,15 +164,24 @@ def merged_by_reason(
     united = [_united(search, several) for several in alike.values()]
     missing: dict[str | frozenset[str] | int, list[Cause]] = defaultdict(list)
     for place, (reason, cause) in enumerate(zip(alike, united, strict=True)):
-        missing[_gathers_again(search, cause) or _words_for(reason, cause) or place].append(cause)
+        missing[_gathers_again(search, cause) or _words_for(search, reason, cause) or place].append(cause)
     return [_united(search, several) for several in missing.values()]
 
 
-def _words_for(reason: Reason | int, cause: Cause) -> frozenset[str]:
-    """Return the words that a cause needs; none if its lines fail at another new word."""
+def _words_for(search: CauseSearch, reason: Reason | int, cause: Cause) -> frozenset[str]:
+    """Return the words that a cause needs and most of its lines have.
+
+    Returns none if its lines fail at another new word.
+    """
     words = frozenset[str]().union(*map(_words, cause.proposals[:1]))
-    is_other = isinstance(reason, tuple) and reason[0] == "word" and reason[1] not in words
-    return frozenset() if is_other else words
+    if isinstance(reason, tuple) and reason[0] == "word" and reason[1] not in words:
+        return frozenset()
+    having = sum(
+        search.weights[n]
+        for n in cause.lines
+        if any(word in words for _, word in search.lines[n].keywords)
+    )
+    return words if 2 * having > sum(search.weights[n] for n in cause.lines) else frozenset()
 
 
 def _gathers_again(search: CauseSearch, cause: Cause) -> str:

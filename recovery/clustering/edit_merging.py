@@ -82,10 +82,12 @@ def merged_as_form(
 def merged_as_choice(
     candidates: Sequence[Candidate],
     allowed: Callable[[Edit, int], bool] = lambda _edit, _place: True,
+    reads: Callable[[str, str], bool] = lambda _rule, _other: False,
 ) -> list[Candidate]:
     """Return one candidate with a choice of words for candidates that differ in one word only.
 
-    ``allowed`` says whether words at a place in the text of an edit may become a choice.
+    ``allowed`` says whether words at a place in the text of an edit may become a choice, ``reads``
+    whether a rule reads all that another one reads: the other is then no choice beside it.
     """
     families: dict[tuple[object, ...], dict[str, Candidate]] = defaultdict(dict)
     for candidate in candidates:
@@ -103,6 +105,7 @@ def merged_as_choice(
         _chosen(family[3], family[4], members)
         for family, members in families.items()
         if len(members) > 1
+        and not any(reads(one, other) for one in members for other in members if one != other)
     ]
 
 

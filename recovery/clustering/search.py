@@ -160,7 +160,9 @@ class CauseSearch:
         first = self._tried(tried, most, sample)
         first += [
             (candidate, self.trial.result(candidate.edits, sample))
-            for candidate in merged_as_choice([c for c, o in first if o.mended])
+            for candidate in merged_as_choice(
+                [c for c, o in first if o.mended], reads=self.finder.phraser.reads
+            )
         ]
         proposals = []
         blocks = [] if wanted is not None else self._blocks(specimens[0], heavy)
@@ -272,9 +274,11 @@ class CauseSearch:
 
     def _worth(self, candidate: Candidate | Proposal, result: TrialResult | Proposal) -> float:
         """Return the gain, reduced for breadth and for a word that is left a name."""
-        worth = self._gain(result) * BREADTH_FACTOR**candidate.breadth
-        reserves = any(isinstance(edit, AddToken) for edit in candidate.edits)
-        return worth * LEFT_A_NAME_FACTOR if self._has_words and not reserves else worth
+        factor = BREADTH_FACTOR**candidate.breadth
+        if self._has_words and not any(isinstance(edit, AddToken) for edit in candidate.edits):
+            factor *= LEFT_A_NAME_FACTOR
+            result = replace(result, advanced=frozenset())  # it fails at what the word belongs to
+        return self._gain(result) * factor
 
     def _kept(self, results: list[tuple[Candidate, TrialResult]]) -> list[tuple[Candidate, int]]:
         """Return the best candidates, first those that accept no negatives."""

@@ -41,6 +41,11 @@ class BracketGroups:
             place += length
         return out
 
+    def are_torn(self, rule: str, symbols: Sequence[str]) -> bool:
+        """Return whether symbols, written in a rule, have a bracket that belongs to another one."""
+        text = " ".join(symbols)
+        return any(f"'{sign}'" in text for sign, owner in self.rules.items() if owner != rule)
+
     def rule_of(self, token: Token) -> str:
         """Return the rule to which an opening bracket belongs; empty for any other token."""
         kind = token[0]

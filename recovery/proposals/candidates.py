@@ -209,6 +209,8 @@ class CandidateFinder:
     ) -> Iterator[RankedEdits]:
         """Yield the edits that write symbols at a site."""
         rule, place = site.rule, site.place
+        if self.phraser.groups.are_torn(rule, symbols):
+            return
         rank = site.rank + self.phraser.breadth(symbols) + len(" ".join(symbols).split(" "))
         tokens = self._site_finder.reserved(words)
         match site.kind:
@@ -249,9 +251,8 @@ class CandidateFinder:
         self, rule: str, symbols: tuple[str, ...], rank: int, tokens: tuple[Edit, ...]
     ) -> Iterator[RankedEdits]:
         text = " ".join(symbols)
-        if text not in self.profile.alternatives(rule) and not self.similarity.is_foreign(
-            rule, symbols
-        ):
+        is_foreign = self.profile.has_only_blocks(rule) or self.similarity.is_foreign(rule, symbols)
+        if text not in self.profile.alternatives(rule) and not is_foreign:
             rank += self.similarity.dissimilarity(rule, symbols)
             rank -= self.profile.same_text_bonus(text)
             if self.similarity.repeats_sibling(rule, symbols):

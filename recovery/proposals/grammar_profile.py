@@ -247,6 +247,11 @@ class GrammarProfile:
             )
         )
 
+    def has_only_blocks(self, rule: str) -> bool:
+        """Return whether each alternative of a rule is a block that it writes: a line is none."""
+        found = self.grammar.by_name[rule]
+        return all(self._is_block(found, a) for a in found.alternatives)
+
     @cached_property
     def line_ends(self) -> frozenset[str]:
         """Rules that consist only of line ends."""

@@ -63,12 +63,19 @@ class Phraser:
 
     @cached_property
     def _wider(self) -> dict[str, frozenset[str]]:
-        """For each rule the rules that it can consist of alone (``literal`` for ``expression``)."""
+        """For each rule the rules that it can consist of alone (``literal`` for ``expression``).
+
+        A line end behind them does not count.
+        """
         network = self.recognizer.network
+
+        def is_end(position: int) -> bool:
+            behind = {network.rule[callee] for callee, _ in network.calls[position]}
+            return network.final[position] or bool(behind) and behind <= self.profile.line_ends
+
         direct = {
-            rule: {
-                network.rule[callee] for callee, back in network.calls[entry] if network.final[back]
-            }
+            rule: {network.rule[callee] for callee, back in network.calls[entry] if is_end(back)}
+            - self.profile.line_ends
             for rule, entry in network.entry.items()
         }
         out: dict[str, frozenset[str]] = {}
@@ -81,6 +88,13 @@ class Phraser:
         for rule in direct:
             closed(rule)
         return out
+
+    def reads(self, rule: str, other: str) -> bool:
+        """Return whether a rule can consist of another rule or token alone."""
+        kind = self.recognizer.lexer.kind_of.get(other)
+        return other in self._wider.get(rule, ()) or (
+            kind is not None and rule in self.matcher.rules_for((kind,))
+        )
 
     def would_be_read_twice(self, rule: str, symbol: str) -> bool:
         """Return whether a rule that can consist of ``rule`` alone already reads the keyword.
@@ -169,7 +183,7 @@ class Phraser:
         if parts is None:
             return
         plain = [self.matcher.text(word) for word in words]
-        if all(plain) and not any(map(self.groups.rule_of, words)):
+        if all(plain):
             tokens = tuple(token for token in plain if token)
             yield tokens
             yield tuple(self.collocations.written_by.get(token, token) for token in tokens)

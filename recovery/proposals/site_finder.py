@@ -280,7 +280,8 @@ class EditSiteFinder:
         if not isinstance(before, Reference) or before.is_token:
             return
         signs = self._signs_between(before.name, words)
-        if signs:
+        is_operand = rule in self.phraser.matcher.value_rules
+        if signs and (is_operand or not any(keyword for _, keyword in signs)):
             rank = self._insertion_width(rule) + REPETITION_COST
             rank += self.phraser.breadth([before.name]) // REPETITION_BREADTH_PART
             yield EditSite("repetition", rule, place, signs, rank)
@@ -347,7 +348,7 @@ class EditSiteFinder:
             return  # the same as with the group it is in
         if called and profile.callers[called] == {rule}:
             return  # the same as an alternative of that rule, which is called only here
-        if whole or ((leading or closing) and not word):
+        if whole or ((leading or closing) and (not word or rule in profile.blocks)):
             return  # the same as an alternative; the words that begin and close a line or a block
         if called and place[-1] == 1 and len(place) == 2 and profile.is_hub(rule):
             return  # the same as an alternative of the rule or of the one it calls

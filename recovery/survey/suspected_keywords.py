@@ -115,7 +115,8 @@ class SuspectedKeywords:
 
     def of_line(self, failed: FailingLine, form: Form) -> tuple[tuple[int, str], ...]:
         """Return the suspected keywords on a failing line, with their indices."""
-        strongest = {self._strongest(run) for run in self._runs(failed, form)}
+        runs = self._runs(failed, form)
+        strongest = {self._strongest(run) for run in runs if self._explains(run, form)}
         return tuple(
             (place, word)
             for place, word in names_of_line(failed.words, form.kinds, self.lexer)
