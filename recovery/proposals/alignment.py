@@ -8,7 +8,7 @@ all of them. Parts that only some lines have become optional, and differing part
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from recovery.forms.symbols import Token
@@ -27,9 +27,16 @@ _Span = tuple[Token, ...]
 _Phrases = tuple[tuple[Token, ...], ...]
 
 
+#: The key of a list of phrases: ``A : IN , B : OUT``.
+_LIST = "list"
+
+
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A keyword or sign, whose text is ``key``; or an operand or a list of operands."""
+    """A keyword or sign, whose text is ``key``; or an operand, a list of operands or of phrases.
+
+    ``spans`` are its tokens, of each item of a list.
+    """
 
     key: str
     spans: tuple[_Span, ...]
@@ -80,19 +87,85 @@ class Aligner:
         self, columns: Sequence[_Column], rows: int, near: frozenset[str]
     ) -> Iterator[tuple[str, ...]]:
         for level in range(PHRASE_LEVELS if columns else 0):
-            narrow = [_written(self._phraser, column, level, near) for column in columns]
+            narrow = [self._written(column, level, near) for column in columns]
             if all(narrow):
                 for written in (_as_usual(self._phraser, columns, narrow, rows), narrow):
-                    yield tuple(_grouped(columns, written, rows))
+                    yield tuple(_grouped(self._phraser, columns, written, rows))
 
     def _aligned(self, phrases: Sequence[Sequence[Token]]) -> tuple[Sequence[_Column], int]:
         """Return the columns of the phrases and the number of rows; none if they do not align."""
-        cut = {self._row(tuple(p)) for p in phrases} - {()}
+        whole = {self._row(tuple(p)) for p in phrases} - {()}
+        if any(part.key == "'('" for row in whole for part in row):
+            whole = {tuple(self._opened(row)) for row in whole}
+        units = {unit for row in whole for unit in _units(self._kinds(row))}
+        cut = {self._with_lists(row, units) for row in whole}
         rows = sorted(cut, key=_by_length)[:MOST_ALIGNED]
         columns = _columns(self._phraser, rows)
         if len(columns) > MOST_COLUMNS or not (columns and _belong_together(columns, len(rows))):
             return (), 0
         return columns, len(rows)
+
+    def _written(
+        self, column: _Column, level: int, near: frozenset[str]
+    ) -> tuple[str, ...]:
+        """Return a column as symbols; empty if nothing fits."""
+        if column.key != _LIST:
+            return _written(self._phraser, column, level, near)
+        items = self.common_phrases(_spans(column), near)
+        if not items:
+            return ()
+        item = items[min(level, len(items) - 1)]
+        is_long = any(len(part.spans) > 1 for part in column.cells.values())
+        return (*item, f"(',' {' '.join(item)})*") if is_long else item
+
+    def _kinds(self, row: Sequence[_Part]) -> tuple[str, ...]:
+        """Return what each part is, as items of a list are compared: a sign, a word, an operand."""
+        may_be_a_name = self._phraser.matcher.may_be_a_name
+        return tuple(
+            part.key
+            if part.key[:1] == "'"
+            else "word"
+            if part.key and not may_be_a_name(part.spans[0][0][0])
+            else ""
+            for part in row
+        )
+
+    def _opened(self, row: Sequence[_Part]) -> Iterator[_Part]:
+        """Yield the parts of a row; a call becomes a name and its operands in brackets.
+
+        So it is compared with lines that have more in these brackets than a call.
+        """
+        display = self._phraser.recognizer.lexer.display
+        for part in row:
+            span = part.spans[0]
+            place = next((i for i, (kind, _) in enumerate(span) if display[kind] == "("), 0)
+            if len(part.spans) > 1 or not place or display[span[-1][0]] != ")":
+                yield part
+                continue
+            yield _Part("", (span[:place],))
+            yield _Part("'('", (span[place : place + 1],))
+            yield from self._row(span[place + 1 : -1]) if place + 2 < len(span) else ()
+            yield _Part("')'", (span[-1:],))
+
+    def _with_lists(
+        self, row: tuple[_Part, ...], units: Collection[tuple[str, ...]]
+    ) -> tuple[_Part, ...]:
+        """Return a row in which items of these kinds, and lists of them, are one part."""
+        kinds = self._kinds(row)
+        for unit in sorted(units, key=lambda unit: (-len(unit), unit)):
+            for first in range(len(row) - len(unit) + 1):
+                items, end = [], first
+                while kinds[end : end + len(unit)] == unit:
+                    item = row[end : end + len(unit)]
+                    items.append(tuple(token for part in item for token in part.spans[0]))
+                    end += len(unit)
+                    if kinds[end : end + 1 + len(unit)] != ("','", *unit):
+                        break
+                    end += 1
+                if items:
+                    folded = (*row[:first], _Part(_LIST, tuple(items)), *row[end:])
+                    return self._with_lists(folded, units)
+        return row
 
     def _row(self, words: tuple[Token, ...]) -> tuple[_Part, ...]:
         """Return the parts of a phrase, cached."""
@@ -126,12 +199,22 @@ def _row(phraser: Phraser, words: Sequence[Token]) -> list[_Part]:
         if is_word and phraser.stands_for_a_rule(span, is_listed=is_listed):
             part = _Part("", (span,))
         else:
-            part = _Part(sign or "", () if sign else (span,))
+            part = _Part(sign or "", (span,))
         if part.is_operand and len(out) > 1 and out[-1].key == "','" and out[-2].is_operand:
             out[-2:] = [_Part("", (*out[-2].spans, span))]
         else:
             out.append(part)
     return out
+
+
+def _units(kinds: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Yield the kinds of items of several parts that come side by side with commas."""
+    for comma in (place for place, kind in enumerate(kinds) if kind == "','"):
+        for size in range(2, min(comma, len(kinds) - comma - 1) + 1):
+            unit = tuple(kinds[comma - size : comma])
+            if "','" not in unit and tuple(kinds[comma + 1 : comma + 1 + size]) == unit:
+                yield unit
+                break
 
 
 def _columns(phraser: Phraser, rows: Sequence[tuple[_Part, ...]]) -> list[_Column]:
@@ -245,18 +328,22 @@ def _cover(phraser: Phraser, spans: Sequence[_Span]) -> list[str] | None:
 
 
 def _grouped(
-    columns: Sequence[_Column], written: Sequence[tuple[str, ...]], rows: int
+    phraser: Phraser, columns: Sequence[_Column], written: Sequence[tuple[str, ...]], rows: int
 ) -> Iterator[str]:
-    """Yield the symbols of all columns; those not in every row become optional or a choice."""
-    runs: list[tuple[frozenset[int], list[str]]] = []
+    """Yield the symbols of all columns; those not in every row become optional or a choice.
+
+    A choice that a rule reads is written as this rule.
+    """
+    runs: list[tuple[frozenset[int], list[str], list[_Column]]] = []
     for column, symbols in zip(columns, written, strict=True):
         present = frozenset(column.cells)
         if not runs or runs[-1][0] != present:
-            runs.append((present, []))
+            runs.append((present, [], []))
         runs[-1][1].extend(symbols)
+        runs[-1][2].append(column)
     place = 0
     while place < len(runs):
-        present, body = runs[place]
+        present, body, having = runs[place]
         place += 1
         if len(present) == rows:
             yield from body
@@ -265,14 +352,19 @@ def _grouped(
         while place < len(runs) and not present & runs[place][0]:
             present |= runs[place][0]
             choice.append(" ".join(runs[place][1]))
+            having = having + runs[place][2]
             place += 1
+        if len(having) == len(choice) > 1:
+            spans = sorted({span for column in having for span in _spans(column)}, key=str)
+            rule = phraser.rules_for_all(spans)
+            choice = [rule[0]] if rule else choice
         text = " | ".join(choice)
         if len(present) == rows:
-            yield f"({text})"
+            yield f"({text})" if len(choice) > 1 else text
         else:
-            yield f"{text}?" if len(choice) == 1 and _is_one(body) else f"({text})?"
+            yield f"{text}?" if len(choice) == 1 and _is_one([text]) else f"({text})?"
 
 
 def _is_one(symbols: Sequence[str]) -> bool:
     """Return whether the symbols are a single one without a suffix."""
-    return len(symbols) == 1 and symbols[0][-1] not in "?*+"
+    return len(symbols) == 1 and " " not in symbols[0] and symbols[0][-1] not in "?*+"

@@ -159,7 +159,10 @@ class Phraser:
         token = self.matcher.text(spans[0][0]) if len(kinds) == 1 and len(spans[0]) == 1 else None
         if not rules:
             return (token,) if token else ()
-        return self._levels_of(rules, near)
+        levels = self._levels_of(rules, near)
+        is_name = kinds == {(self.recognizer.lexer.name_kind,)}
+        plain = self.collocations.written_by.get(token, token) if is_name and token else None
+        return tuple(dict.fromkeys((plain, *levels))) if plain else levels
 
     def phrases(
         self, words: Sequence[Token], near: frozenset[str] = frozenset()
