@@ -122,6 +122,8 @@ MOST_COMBINATIONS = 12
 #: usually does. Measured: other proposals with 1, the same with 2.
 USUAL_RULE_COST = 2
 NARROWER_RULE_COST = 5
+#: Steps of a rule that repeats a part: `variable`, beside a name with an index. Not measured.
+REPEATED_COST = 2
 #: Phrases that are aligned, the longest first, and columns they may give. Bound: cost grows with
 #: the product.
 MOST_ALIGNED = 16

@@ -92,10 +92,19 @@ class CauseSearch:
         proposals = self._proposals(group, wanted)
         for place, best in enumerate(proposals):
             # a line that only advances has its first cause here, and another one later
-            taken = (best.mended & self.open) | (best.advanced & members)
+            taken = self._explained(best, members) | (best.advanced & members)
             if taken:
                 return Cause(tuple(sorted(taken)), tuple(proposals[place:]))
         return None
+
+    def _explained(self, proposal: Proposal, members: frozenset[int]) -> frozenset[int]:
+        """Return the open lines that a proposal repairs; of others none with a word it lacks."""
+        words = {edit.name for edit in proposal.edits if isinstance(edit, AddToken)}
+        return frozenset(
+            n
+            for n in proposal.mended & self.open
+            if n in members or all(word in words for _, word in self.lines[n].keywords)
+        )
 
     def ranked(self, proposals: Sequence[Proposal], lines: Collection[int]) -> list[Proposal]:
         """Return proposals for some or all of these lines, the best for all of them first."""

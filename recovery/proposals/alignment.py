@@ -101,7 +101,8 @@ class Aligner:
         cut = {self._with_lists(row, units) for row in whole}
         rows = sorted(cut, key=_by_length)[:MOST_ALIGNED]
         columns = _columns(self._phraser, rows)
-        if len(columns) > MOST_COLUMNS or not (columns and _belong_together(columns, len(rows))):
+        are_alike = len(set(map(self._kinds, rows))) == 1 or _belong_together(columns, len(rows))
+        if len(columns) > MOST_COLUMNS or not (columns and are_alike):
             return (), 0
         return columns, len(rows)
 

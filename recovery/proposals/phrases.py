@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
 from itertools import islice, product
 
+from grammar.notation.model import Repeat, walk
 from recovery.forms.rule_matcher import RuleMatcher
 from recovery.forms.symbols import Token
 from recovery.proposals.bracket_groups import BracketGroups
@@ -24,6 +25,7 @@ from recovery.tuning import (
     MOST_OPERAND_RULES,
     MOST_SYMBOLS,
     NARROWER_RULE_COST,
+    REPEATED_COST,
     USUAL_RULE_COST,
 )
 
@@ -124,7 +126,7 @@ class Phraser:
         rule = self.collocations.written_by.get(symbol, symbol)
         if rule not in self._wider:
             return 0
-        cost = 1 + len(self._wider[rule]) + (rule != symbol)
+        cost = 1 + len(self._wider[rule]) + (rule != symbol) + REPEATED_COST * self._repeats(rule)
         usual = self.collocations.usual(before)
         if 2 * usual.get(symbol, 0) > sum(usual.values()):
             return min(cost, USUAL_RULE_COST)
@@ -132,6 +134,12 @@ class Phraser:
             rule == u or rule in self._wider.get(u, ()) for u in usual
         )
         return cost + (NARROWER_RULE_COST if is_narrower else 0)
+
+    def _repeats(self, rule: str) -> bool:
+        """Return whether a rule repeats a part."""
+        alternatives = self.profile.grammar.by_name[rule].alternatives
+        elements = (e for a in alternatives for e in walk(a))
+        return any(isinstance(e, Repeat) and e.operator != "?" for e in elements)
 
     def stands_for_a_rule(self, span: Sequence[Token], *, is_listed: bool) -> bool:
         """Return whether some rule reads the span by itself (``TRUE`` is a literal too).
@@ -160,8 +168,8 @@ class Phraser:
         if not rules:
             return (token,) if token else ()
         levels = self._levels_of(rules, near)
-        is_name = kinds == {(self.recognizer.lexer.name_kind,)}
-        plain = self.collocations.written_by.get(token, token) if is_name and token else None
+        name = self.recognizer.lexer.name
+        plain = self._fitted(name, kinds) if name else None
         return tuple(dict.fromkeys((plain, *levels))) if plain else levels
 
     def phrases(
@@ -236,6 +244,7 @@ class Phraser:
             return None
         groups = {span[1:] for span in spans}
         behind = [rule for rule in self.groups.rules.values() if self._reads_all(rule, groups - {()})]
+        symbol = self.collocations.written_by.get(symbol, symbol)
         if groups == {()}:
             return symbol
         return f"{symbol} {behind[0]}{'?' if () in groups else ''}" if behind else None

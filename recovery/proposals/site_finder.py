@@ -205,8 +205,8 @@ class EditSiteFinder:
                 # element of a rule only if that element itself comes next
                 is_prefix = position != base or (not gathers and end - start <= LONGEST_PREFIX)
                 is_suffix = is_last and position != base and not begins_loop
-                if (comes_next and is_prefix) or (
-                    is_suffix and not self._is_behind_line_end(rule, place)
+                if ((comes_next and is_prefix) or is_suffix) and not self._is_behind_line_end(
+                    rule, place
                 ):
                     yield self._insertion(rule, place, words[start:end])
                 yield from self._repetitions(rule, place, words[start:end])
@@ -261,11 +261,18 @@ class EditSiteFinder:
         return EditSite("insert", rule, place, tuple(words), width + SITE_COST)
 
     def _is_behind_line_end(self, rule: str, place: Address) -> bool:
-        """Return whether a place is after the line end of a rule, which is the next line."""
+        """Return whether a place is after a line end, where lines are read and no part of one."""
         elements = self.profile.sequence(rule, place[:-1]).elements
-        return self.profile.closing(rule) is not None and (
-            len(place) == 2 and place[-1] > len(elements)
-        )
+        return place[-1] > 1 and self._ends_a_line(elements[place[-1] - 2])
+
+    def _ends_a_line(self, element: Element) -> bool:
+        """Return whether an element is a line end, or lines in a row."""
+        item = element.item if isinstance(element, Repeat) else element
+        if not isinstance(item, Reference):
+            return False
+        profile = self.profile
+        ends = {*profile.line_ends, self.recognizer.lexer.line_end}
+        return item.name in ends or (item is not element and profile.closing(item.name) is not None)
 
     def _insertion_width(self, rule: str) -> int:
         """Return the width of an insertion into a rule; less for a single reference."""
@@ -348,6 +355,8 @@ class EditSiteFinder:
             return  # the same as with the group it is in
         if called and profile.callers[called] == {rule}:
             return  # the same as an alternative of that rule, which is called only here
+        if self._ends_a_line(element):
+            return  # a part of a line in place of lines
         if whole or ((leading or closing) and (not word or rule in profile.blocks)):
             return  # the same as an alternative; the words that begin and close a line or a block
         if called and place[-1] == 1 and len(place) == 2 and profile.is_hub(rule):
