@@ -310,7 +310,7 @@ class CauseSearch:
                 MOST_SCORED if self.is_thorough else MOST_SCORED_LIGHT
             ):
                 break
-        return clean + costly[: KEPT - len(clean)]
+        return clean + costly[: max(1, KEPT - len(clean))]
 
     def _diverse(
         self, results: list[tuple[Candidate, TrialResult]]

@@ -121,15 +121,18 @@ class Aligner:
 
     def _kinds(self, row: Sequence[_Part]) -> tuple[str, ...]:
         """Return what each part is, as items of a list are compared: a sign, a word, an operand."""
-        may_be_a_name = self._phraser.matcher.may_be_a_name
         return tuple(
-            part.key
-            if part.key[:1] == "'"
-            else "word"
-            if part.key and not may_be_a_name(part.spans[0][0][0])
-            else ""
+            part.key if part.key[:1] == "'" else "" if self._is_like_a_name(part) else "word"
             for part in row
         )
+
+    def _is_like_a_name(self, part: _Part) -> bool:
+        """Return whether a part is an operand, or a word where some rule reads a name too."""
+        matcher = self._phraser.matcher
+        kind, keyword = part.spans[0][0]
+        name = self._phraser.recognizer.lexer.name_kind
+        shared = matcher.rules_for((kind,)) & matcher.rules_for((name,))
+        return part.is_operand or (keyword is None and bool(shared))
 
     def _opened(self, row: Sequence[_Part]) -> Iterator[_Part]:
         """Yield the parts of a row; a call becomes a name and its operands in brackets.

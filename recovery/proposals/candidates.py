@@ -251,7 +251,8 @@ class CandidateFinder:
         self, rule: str, symbols: tuple[str, ...], rank: int, tokens: tuple[Edit, ...]
     ) -> Iterator[RankedEdits]:
         text = " ".join(symbols)
-        is_foreign = self.profile.has_only_blocks(rule) or self.similarity.is_foreign(rule, symbols)
+        known = self.profile.has_only_blocks(rule) or symbols[0] in self.profile.openers
+        is_foreign = known or self.similarity.is_foreign(rule, symbols)
         if text not in self.profile.alternatives(rule) and not is_foreign:
             rank += self.similarity.dissimilarity(rule, symbols)
             rank -= self.profile.same_text_bonus(text)

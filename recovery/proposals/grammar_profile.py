@@ -253,6 +253,19 @@ class GrammarProfile:
         return all(self._is_block(found, a) for a in found.alternatives)
 
     @cached_property
+    def openers(self) -> frozenset[str]:
+        """Keywords with which blocks begin and nothing else: what else does is no block."""
+        first = [
+            (rule.name in self.blocks, rule.source_of(a.elements[0]))
+            for rule in self.grammar.rules
+            if not rule.is_lexer
+            for a in rule.alternatives
+            if a.elements and self.vocabulary.is_keyword(a.elements[0])
+        ]
+        others = {word for is_block, word in first if not is_block}
+        return frozenset(word for is_block, word in first if is_block) - others
+
+    @cached_property
     def line_ends(self) -> frozenset[str]:
         """Rules that consist only of line ends."""
         return frozenset(

@@ -412,7 +412,8 @@ class EditSiteFinder:
                     if is_end and any(map(self.vocabulary.is_keyword, left_out)):
                         if rule in self.profile.blocks:
                             break  # the words that open and close a block
-                        rank += 0 if failed is None else 2 * UNLIKELY_COST
+                        is_whole = failed is None and self.recognizer.lexer.is_keyword(rest[0])
+                        rank += 0 if is_whole else 2 * UNLIKELY_COST
                     yield rank, (MakeOptional(rule, place, count),)
                     break
 

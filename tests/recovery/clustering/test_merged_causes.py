@@ -1,6 +1,7 @@
 """Causes are one when one edit mends what the edits of each mend."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Widen
 from grammar.notation.g4 import read
@@ -11,7 +12,6 @@ from recovery.clustering.causes import (
     merged_by_edits,
     merged_by_first_word,
     merged_by_reason,
-    with_gathered,
 )
 from recovery.clustering.search import CauseSearch
 from recovery.proposals.edit_site import LinePattern
@@ -137,8 +137,9 @@ def test_causes_of_one_reason_are_one() -> None:
 
 
 def test_causes_that_need_the_same_word_are_one() -> None:
-    """Unless lines of one of them fail at another new word."""
+    """Unless lines of one of them fail at another new word, or most of them lack the word."""
     searched = search()
+    searched.lines = [replace(line, keywords=((0, "WORD"),)) for line in searched.lines]
     new = AddToken("WORD")
     causes = [
         Cause(lines, (searched.proposal((new, edit), 0),))
@@ -147,40 +148,8 @@ def test_causes_that_need_the_same_word_are_one() -> None:
     [one] = merged_by_reason(searched, causes, [("<",), ("<",), ("word", "WORD"), (">",)])
     assert (0, 1, 2, 3) == one.lines
     assert causes == merged_by_reason(searched, causes, [("<",), ("<",), *[("word", "OTHER")] * 2])
-
-
-def test_the_alternatives_of_a_missing_rule_are_one_proposal() -> None:
-    """The first proposal repairs all lines of a cause."""
-    searched = search()
-    alternatives = [AddAlternative("line", f"IF NAME '{sign}' NAME NEWLINE") for sign in "<>"]
-    less, more = (searched.proposal((edit,), 0) for edit in alternatives)
-    first, *others = with_gathered(searched, Cause((0, 1, 2, 3), (less, more))).proposals
-    assert set(alternatives) == set(first.edits)
-    assert mends_all(first)
-    assert {less, more} == {*others}
-
-
-def test_what_is_gathered_accepts_no_more_negatives() -> None:
-    """An alternative that costs negatives beside the others is left out."""
-
-    def count_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
-        del rivals
-        return any("'<'" in str(edit) for edit in edits) and "'>'" in str(edits)
-
-    searched = search(count_negatives)
-    alternatives = [AddAlternative("line", f"IF NAME '{sign}' NAME NEWLINE") for sign in "<>"]
-    less, more = (searched.proposal((edit,), 0) for edit in alternatives)
-    cause = Cause((0, 1, 2, 3), (less, more))
-    assert cause == with_gathered(searched, cause)
-
-
-def test_alternatives_that_repair_nothing_are_not_gathered() -> None:
-    """Lines that are only read further need something else."""
-    searched = search()
-    further = searched.proposal((AddAlternative("line", "IF NAME '<' '<' NEWLINE"),), 0)
-    assert {0, 1} == further.advanced
-    cause = Cause((0, 1), (further,))
-    assert cause == with_gathered(searched, cause)
+    searched.lines = [*searched.lines[:2], *search().lines[2:]]
+    assert causes == merged_by_reason(searched, causes, [("<",), ("<",), ("word", "WORD"), (">",)])
 
 
 def test_causes_that_add_uncalled_rules_to_one_rule_are_one() -> None:

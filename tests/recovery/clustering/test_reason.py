@@ -24,7 +24,7 @@ def reasons(*texts: str, without: tuple[Edit, ...] = (), start: Grammar = _START
     found = survey_texts([(f"{n}.src", text) for n, text in enumerate(texts)], grammar)
     failed = [(file.digest, file.failures[0]) for file in found.files]
     suspected = SuspectedKeywords(
-        recognizer.lexer, [(digest, line, found.forms[line.form]) for digest, line in failed]
+        recognizer, [(digest, line, found.forms[line.form]) for digest, line in failed]
     )
     reason, finder = ReasonFinder(recognizer).reason, FailureFinder(recognizer)
     out = []

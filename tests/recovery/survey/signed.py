@@ -26,7 +26,7 @@ def signatures(*programs: str) -> list[list[Signature]]:
         for failed in file.failures
         if not failed.follows
     ]
-    suspected = SuspectedKeywords(RECOGNIZER.lexer, failures)
+    suspected = SuspectedKeywords(RECOGNIZER, failures)
     out: dict[str, list[Signature]] = {file.digest: [] for file in found.files}
     for digest, failed, form in failures:
         state, _ = RECOGNIZER.run(RECOGNIZER.restore(form.before), form.kinds[: form.index])

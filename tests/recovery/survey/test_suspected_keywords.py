@@ -49,7 +49,7 @@ def test_keywords_in_the_middle_of_a_line_are_reported_with_their_places() -> No
     texts = [(f"{n}.src", text) for n, text in enumerate(each(*lines))]
     found = survey_texts(texts, PRELIMINARY)
     failures = [(f.digest, f.failures[0], found.forms[f.failures[0].form]) for f in found.files]
-    suspected = SuspectedKeywords(RECOGNIZER.lexer, failures)
+    suspected = SuspectedKeywords(RECOGNIZER, failures)
     assert [((6, "STEP"),)] * 3 + [((2, "STEP"),)] == [
         suspected.of_line(failed, form) for _, failed, form in failures
     ]
@@ -60,7 +60,7 @@ def only_names(lines: Sequence[str], word: str) -> bool:
     texts = [(f"{n}.src", text) for n, text in enumerate(each(*lines))]
     found = survey_texts(texts, PRELIMINARY)
     failures = [(f.digest, x, found.forms[x.form]) for f in found.files for x in f.failures]
-    suspected = SuspectedKeywords(RECOGNIZER.lexer, failures)
+    suspected = SuspectedKeywords(RECOGNIZER, failures)
     meant = {said for _, failed, form in failures for _, said in suspected.of_line(failed, form)}
     return word not in meant and not any(word in t.split() for t in signature_texts(*each(*lines)))
 
