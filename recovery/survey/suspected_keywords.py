@@ -140,10 +140,9 @@ class SuspectedKeywords:
 
     def _explains(self, run: Sequence[tuple[int, str]], form: Form) -> bool:
         """Return whether a line may fail because of a run of names: not if all of it was read."""
-        last = run[-1][0]
-        return last >= form.index or (
-            last == form.index - 1 and not self._sign(form.kinds, form.index)
-        )
+        last, sign = run[-1][0], self._sign(form.kinds, form.index)
+        may_begin = not sign or sign in _BEGINS_OPERAND
+        return last >= form.index or (last == form.index - 1 and may_begin)
 
     def _sole_words(self, failures: Iterable[_Failure]) -> frozenset[str]:
         """Return words at which lines fail behind a keyword, and hardly at any other word."""
