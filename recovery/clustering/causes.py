@@ -164,7 +164,9 @@ def merged_by_reason(
     united = [_united(search, several) for several in alike.values()]
     missing: dict[str | frozenset[str] | int, list[Cause]] = defaultdict(list)
     for place, (reason, cause) in enumerate(zip(alike, united, strict=True)):
-        missing[_gathers_again(search, cause) or _words_for(search, reason, cause) or place].append(cause)
+        missing[_gathers_again(search, cause) or _words_for(search, reason, cause) or place].append(
+            cause
+        )
     return [_united(search, several) for several in missing.values()]
 
 

@@ -48,7 +48,6 @@ from recovery.tuning import (
     WIDE_PER_SITE,
 )
 
-
 #: Which edits are sought.
 Wanted = Callable[[Sequence[Edit]], bool]
 
@@ -118,9 +117,7 @@ class CauseSearch:
         self._has_words = all(self.lines[n].keywords for n in lines)
         return self._sought
 
-    def best_from_scratch(
-        self, lines: Sequence[int], wanted: Wanted | None = None
-    ) -> Cause | None:
+    def best_from_scratch(self, lines: Sequence[int], wanted: Wanted | None = None) -> Cause | None:
         """Return the cause of the heaviest of these lines, as if there were no others."""
         self.is_thorough = True
         self.open = set(lines)

@@ -106,9 +106,7 @@ class Aligner:
             return (), 0
         return columns, len(rows)
 
-    def _written(
-        self, column: _Column, level: int, near: frozenset[str]
-    ) -> tuple[str, ...]:
+    def _written(self, column: _Column, level: int, near: frozenset[str]) -> tuple[str, ...]:
         """Return a column as symbols; empty if nothing fits."""
         if column.key != _LIST:
             return _written(self._phraser, column, level, near)

@@ -73,7 +73,7 @@ class Phraser:
 
         def is_end(position: int) -> bool:
             behind = {network.rule[callee] for callee, _ in network.calls[position]}
-            return network.final[position] or bool(behind) and behind <= self.profile.line_ends
+            return network.final[position] or (bool(behind) and behind <= self.profile.line_ends)
 
         direct = {
             rule: {network.rule[callee] for callee, back in network.calls[entry] if is_end(back)}
@@ -222,7 +222,7 @@ class Phraser:
         return tuple(symbols)
 
     def usual_for(self, spans: Sequence[tuple[Token, ...]], before: Before) -> str | None:
-        """Return the symbol that is usual at such a place if it reads all the spans, or ``None``."""
+        """Return what is usual at such a place if it reads all the spans, or ``None``."""
         if any(keyword is not None for span in spans for _, keyword in span):
             return None
         kinds = {tuple(kind for kind, _ in span) for span in spans}
@@ -243,7 +243,8 @@ class Phraser:
         if any(span[0] != kind for span in spans):
             return None
         groups = {span[1:] for span in spans}
-        behind = [rule for rule in self.groups.rules.values() if self._reads_all(rule, groups - {()})]
+        rules = self.groups.rules.values()
+        behind = [rule for rule in rules if self._reads_all(rule, groups - {()})]
         symbol = self.collocations.written_by.get(symbol, symbol)
         if groups == {()}:
             return symbol

@@ -99,7 +99,7 @@ class SuspectedKeywords:
             self._often.update(word for run in self._runs(failed, form) for _, word in run)
         found: dict[str, _Uses] = defaultdict(_Uses)
         for digest, failed, form in failures:
-            odd = set()
+            odd: set[int] = set()
             for run in self._runs(failed, form):
                 place, word = self._strongest(run)
                 odd.update(place for place, _ in run)
@@ -120,8 +120,7 @@ class SuspectedKeywords:
         return tuple(
             (place, word)
             for place, word in names_of_line(failed.words, form.kinds, self.lexer)
-            if word in self._words
-            and (place == form.index > 0 or (place, word) in strongest)
+            if word in self._words and (place == form.index > 0 or (place, word) in strongest)
         )
 
     def _runs(self, failed: FailingLine, form: Form) -> list[list[tuple[int, str]]]:

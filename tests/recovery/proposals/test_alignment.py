@@ -40,6 +40,23 @@ def test_what_differs_is_optional_a_choice_or_a_wider_rule(texts: list[str], exp
     assert expected in common(*texts)
 
 
+@pytest.mark.parametrize(
+    ("texts", "expected"),
+    [
+        (
+            ["SLIN (A: HOLD, B: HOLD)", "SLIN (C: SEC)", "SLIN ()"],
+            "SLIN '(' (NAME ':' (HOLD | SEC) (',' NAME ':' (HOLD | SEC))*)? ')'",
+        ),
+        (["A: HOLD, INT: HOLD", "REAL: SEC"], "type ':' (HOLD | SEC) (',' type ':' (HOLD | SEC))*"),
+        (["SLIN INT A", "SLIN B C"], "SLIN type NAME"),
+        (["SLIN A, B[1]", "SLIN C"], "SLIN NAME index? (',' NAME index?)*"),
+    ],
+)
+def test_items_of_a_list_are_laid_beside_one_another(texts: list[str], expected: str) -> None:
+    """Also where they are phrases; words and names that one rule reads are that rule."""
+    assert expected in common(*texts)
+
+
 def test_the_order_of_the_phrases_does_not_matter() -> None:
     """The same phrases in another order give the same."""
     texts = ["LIN A", "LIN A C_DIS", "LIN {X: X 1}"]

@@ -72,6 +72,32 @@ def test_a_name_beside_its_type_is_no_keyword() -> None:
     assert only_names(["REAL_T SPEED"] * 9, "SPEED")
 
 
+def words_meant(*lines: str) -> set[str]:
+    """The words that are taken for keywords on the lines, one a file."""
+    texts = [(f"{n}.src", text) for n, text in enumerate(each(*lines))]
+    found = survey_texts(texts, PRELIMINARY)
+    failures = [(f.digest, x, found.forms[x.form]) for f in found.files for x in f.failures]
+    suspected = SuspectedKeywords(RECOGNIZER, failures)
+    return {said for _, failed, form in failures for _, said in suspected.of_line(failed, form)}
+
+
+def test_a_word_too_many_explains_the_names_beside_it() -> None:
+    """Of names in a row the one that most lines have is the keyword."""
+    types = [f"GLOB {kind} {name}" for kind in ("T1", "T2") for name in ("A", "B", "C", "D")]
+    assert {"GLOB"} == words_meant(*types)
+
+
+def test_a_name_that_is_read_is_no_keyword() -> None:
+    """A type is no keyword for standing beside many names, where the line fails behind them."""
+    assert set() == words_meant(*(f"DECL T1 V{n}={{A {n}}}" for n in range(9)))
+
+
+def test_a_name_that_a_line_could_do_without_is_a_keyword() -> None:
+    """It stands where the keyword behind it could."""
+    assert {"FIXED"} == words_meant(*(f"DECL FIXED {t} A" for t in ("INT", "REAL", "BOOL") * 3))
+    assert set() == words_meant(*(f"LIN P{n} CONTINUE" for n in range(9)), *["LIN P CONTINUE"] * 9)
+
+
 def test_a_word_of_one_file_is_no_keyword() -> None:
     """Whoever repeats a word in one program only may have called something so."""
     ((first, *_),) = signatures(program(*(f"GLUE {name}" for name in "BCDEFGHIJ")))
