@@ -662,12 +662,13 @@ def _two_folds(view: GrammarView) -> Iterator[InferredStep]:
 
 def test_brackets_behind_names_are_of_operands(toy: Grammar) -> None:
     """Names elsewhere, as those that are assigned to, get none."""
-    start = _with(toy, _FLAT, "    : NAME\n    | NUMBER\n")
+    start = _with(toy, _FLAT, "    : NAME\n    | NUMBER\n", "    : HALT\n", "    : HALT NAME\n")
     start = apply(start, with_names(start, "NAME").edits)
-    files = tuple(CorpusFile(n, f"{n} := {n}(1)\n", frozenset({n})) for n in "ABC")
+    text = "{0} := {0}(1)\nHALT {0}(2)\nHALT {0}(3)\n"
+    files = tuple(CorpusFile(n, text.format(n), frozenset({n})) for n in "ABC")
     recognizer = Recognizer(_grown(start, files).grammar)
-    texts = ("D := E(F(2))\n", "D(1) := 2\n")
-    assert [True, False] == [recognizer.accepts(text) for text in texts]
+    texts = ("D := E(F(2))\n", "HALT D(4)\n", "D(1) := 2\n")
+    assert [True, True, False] == [recognizer.accepts(text) for text in texts]
 
 
 def test_operands_of_one_origin(toy: Grammar) -> None:
