@@ -11,6 +11,7 @@ import math
 import re
 from collections.abc import Collection, Iterator, Sequence, Set
 from dataclasses import replace
+from functools import cached_property
 from typing import Literal, get_args
 
 from grammar.notation.edits import (
@@ -336,8 +337,8 @@ class Induction:
         while fold := next(found, None):
             if fold.title in refused or fold.edits in self.struck | self._lossy:
                 continue
-            if not self._is_grown(review.recognizer.grammar, fold.edits):
-                continue  # what no step has changed is right as it is
+            if not self._is_touched(review.recognizer.grammar, fold.edits):
+                continue  # what no line needs otherwise is right as it is
             words = described(review.recognizer.grammar, fold.edits)
             if words in tried:
                 continue
@@ -368,10 +369,22 @@ class Induction:
             taken, lost = self.shown.kept(self.grammar, bounds, self._names)
         return taken, [*lost, *refused.values()]
 
-    def _is_grown(self, grammar: Grammar, edits: Sequence[Edit]) -> bool:
-        """Return whether all rules that edits change differ from those of the start."""
+    def _is_touched(self, grammar: Grammar, edits: Sequence[Edit]) -> bool:
+        """Return whether lines fail in all rules that edits change, or steps have changed them."""
         start, now = self._start.by_name, grammar.by_name
-        return all(n not in start or start[n].text != now[n].text for n in changed_rules(edits))
+        changed = changed_rules(edits) - self._failing_rules
+        return all(n not in start or start[n].text != now[n].text for n in changed)
+
+    @cached_property
+    def _failing_rules(self) -> frozenset[str]:
+        """The rules of the start in which lines fail that they have begun to read."""
+        finder, failures = self.shown.failures(self._start)
+        recognizer, network = finder.recognizer, finder.recognizer.network
+        found = (failure.state for of_file in failures for failure in of_file)
+        states = {(state.core, state.tail): state for state in found}
+        begun = (p for state in states.values() for p, _ in recognizer.sites(state))
+        entries = frozenset(network.entry.values())
+        return frozenset(network.rule[position] for position in begun if position not in entries)
 
     # --------------------------------------------------------------------------------------- tokens
 
