@@ -20,17 +20,12 @@ from recovery.induction.folds_of_alternatives import (
 )
 from recovery.induction.folds_of_declarations import (
     brackets,
-    initial_values,
     modifiers,
-    named_types,
     tails,
     undeclared,
-    words_as_types,
 )
 from recovery.induction.folds_of_operands import (
     any_operands,
-    headers,
-    leading,
     named_arguments,
     signs,
     trailing,
@@ -42,17 +37,12 @@ from recovery.induction.steps import InferredStep
 #: The kinds of fold, in the order in which they are tried.
 FOLDS: tuple[Callable[[GrammarView], Iterator[InferredStep]], ...] = (
     unused_rules,
-    named_types,
-    words_as_types,
     alternatives_of_a_word,
     alternatives_of_two_rules,
     lists,
     trailing,
     tails,
     brackets,
-    headers,
-    initial_values,
-    leading,
     signs,
     modifiers,
     undeclared,

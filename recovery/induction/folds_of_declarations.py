@@ -6,45 +6,14 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import pairwise, takewhile
 
-from grammar.notation.addresses import Address, sequences
-from grammar.notation.edits import AddAlternative, Insert, Replace
-from grammar.notation.model import Element, Group, Literal, Reference, Repeat, Rule
+from grammar.notation.edits import Insert, Replace
+from grammar.notation.model import Element, Literal, Reference, Repeat, Rule
 from recovery.brackets import BRACKETS
 from recovery.forms.operand_rules import bracket_pairs
 from recovery.forms.samples import samples_of
-from recovery.induction.grammar_view import GrammarView, sign_of
+from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import InferredStep
 from recovery.tuning import FOLDING_SYMBOLS
-
-
-def named_types(view: GrammarView) -> Iterator[InferredStep]:
-    """Words that declare as types do are names: where a type may stand a name may."""
-    heads = [view.words(e[0]) for _, _, e in view.lines() if view.is_name(e[1])]
-    of_types = [words for words in heads if len(words & view.types) > 1]
-    for word in sorted(frozenset[str]().union(*of_types) - view.types - {view.lexer.name}):
-        if view.rules.names:
-            edits = (AddAlternative(view.rules.names, word),)
-            title = f"{word} is a name as types are"
-            yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
-
-
-def words_as_types(view: GrammarView) -> Iterator[InferredStep]:
-    """Yield types for words that stand in place of a type and whose name is followed alike."""
-    found: dict[str, set[tuple[str, ...]]] = defaultdict(set)
-    longer: set[str] = set()  # words with an operand behind the name too
-    for rule, _, elements in view.lines():
-        for shape in samples_of(view.rules, elements) if _declares_some(view, elements) else ():
-            texts = [s.operand.rule if s.operand else s.text for s in shape]
-            for place, one in enumerate(texts[:-1]):
-                if place and shape[place + 1].is_operand:
-                    found[one].add((rule.name, *texts[:place], *texts[place + 2 : place + 3]))
-                    longer.update(one for s in shape[place + 2 : place + 3] if s.is_operand)
-    for choice in view.rules.type_rules:
-        for word in sorted(view.reserved & found.keys() - longer):
-            if found[word] <= found[choice]:
-                title = f"{word} is one of {choice}"
-                edits = (AddAlternative(choice, word),)
-                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
 
 
 def tails(view: GrammarView) -> Iterator[InferredStep]:
@@ -99,28 +68,6 @@ def brackets(view: GrammarView) -> Iterator[InferredStep]:
                 yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
 
 
-def initial_values(view: GrammarView) -> Iterator[InferredStep]:
-    """Yield the same values after a sign for all lines of a rule, if none of them is a name."""
-    for rule in view.grammar.rules:
-        found: dict[str, list[tuple[Address, list[str]]]] = defaultdict(list)
-        for address, sequence in () if _is_inner(view, rule) else sequences(rule):
-            for place, (left, right) in enumerate(pairwise(sequence.elements), 2):
-                values = _values(view, right)
-                if sign_of(left) and values:
-                    found[sign_of(left)].append(((*address, place), values))
-        for sign, places in found.items():
-            every = sorted({value for _, values in places for value in values})
-            including = view.rules.includes
-            every = [v for v in every if not any(o != v and including(o, v) for o in every)]
-            edits = tuple(
-                Replace(rule.name, at, f"({' | '.join(every)})")
-                for at, values in places
-                if values != every
-            )
-            title = f"values behind {sign} in {rule.name}"
-            yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
-
-
 def modifiers(view: GrammarView) -> Iterator[InferredStep]:
     """Yield a word that is optional in front of two kinds of line for further kinds like them."""
     for rule in view.grammar.rules:
@@ -168,24 +115,6 @@ def _declares(view: GrammarView, elements: Sequence[Element]) -> bool:
     words = view.words(elements[0]) if len(elements) > 2 else frozenset()
     is_word = len(words) == 1 and view.types.isdisjoint(words)
     return is_word and view.is_name(elements[1]) and not isinstance(elements[2], Literal)
-
-
-def _declares_some(view: GrammarView, elements: Sequence[Element]) -> bool:
-    """Return whether elements begin with a reserved word of no kind, after optional words."""
-    needed = [e for e in elements if not view.is_ending(e)]
-    return bool(needed and view.words(needed[0]) & view.reserved)
-
-
-def _values(view: GrammarView, element: Element) -> list[str]:
-    """Return the rules of values of which an element is a choice; none if one reads names."""
-    named = view.rules.matcher.rules_for((view.lexer.name_kind,))
-    every = [element]
-    if isinstance(element, Group):
-        every = [e for a in element.alternatives for e in a.elements]
-        every *= all(len(a.elements) == 1 for a in element.alternatives)
-    names = [e.name for e in every if isinstance(e, Reference) and not e.is_token]
-    is_of_values = len(names) == len(every) and named.isdisjoint(names)
-    return sorted(names) if is_of_values else []
 
 
 def _is_inner(view: GrammarView, rule: Rule) -> bool:

@@ -9,7 +9,6 @@ from itertools import pairwise, takewhile
 
 from grammar.notation.addresses import Address, element_at, sequences
 from grammar.notation.edits import (
-    AddAlternative,
     Edit,
     Insert,
     RemoveAlternative,
@@ -61,46 +60,6 @@ def trailing(view: GrammarView) -> Iterator[InferredStep]:
             done.add(every)
             title = f"{', '.join(sorted(every))} at the end of lines"
             yield InferredStep(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
-
-
-def headers(view: GrammarView) -> Iterator[InferredStep]:
-    """Any operand where a variable is all that opens a block, if most others open with any."""
-    widest, end, variable = view.rules.widest, view.profile.line_end, view.writer.cover.variable
-    alone: list[tuple[str, int]] = []
-    others = 0
-    for name in view.rules.reaches:
-        for number, alternative in enumerate(view.grammar.by_name[name].alternatives, 1):
-            called = (e.name for e in walk(alternative) if isinstance(e, Reference))
-            is_block = any(name in view.rules.reaches.get(c, ()) for c in called)
-            match alternative.elements if is_block else ():
-                case (Reference(is_token=True), Reference() as operand, following, *_):
-                    others += operand.name == widest
-                    ends = view.source(name, [following]) == end
-                    is_one = view.is_name(operand) or operand.name == variable
-                    alone += [(name, number)] if ends and is_one else []
-    for name, number in alone if others > len(alone) else ():
-        edits = (Replace(name, (number, 2), widest or ""),)
-        title = f"any operand opens a block in {name} {number}"
-        yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
-
-
-def leading(view: GrammarView) -> Iterator[InferredStep]:
-    """Lines without a word that may be missing at their head, where the next one is a word."""
-    for rule, number, elements in view.lines():
-        first = view.words(elements[0])
-        if not first & view.prefixes:
-            continue
-        second = elements[1]
-        word = second.item if isinstance(second, Repeat) else second
-        words = view.words(word)
-        led = {w for a in rule.alternatives for e in a.elements[:1] for w in view.words(e)}
-        if words and not words & (led | view.rules.named_words):
-            # what says which line it is has to be there
-            every = view.alternative(rule.name, number).elements[2:]
-            text = f"{rule.source_of(word)} {view.source(rule.name, every)}"
-            title = f"{min(words)} without {min(first)} in {rule.name}"
-            edits = (AddAlternative(rule.name, text),)
-            yield InferredStep(title, edits, (), breadth=len(every) + FOLDING_SYMBOLS)
 
 
 def signs(view: GrammarView) -> Iterator[InferredStep]:

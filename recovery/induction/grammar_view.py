@@ -24,18 +24,12 @@ from recovery.proposals.grammar_profile import GrammarProfile
 class GrammarView:
     """The lines of one grammar.
 
-    ``prefixes`` are optional words at the beginning of a line, ``types`` the words of a kind, and
-    ``kind`` is the name of the rule of these words, which may not exist yet.
+    ``types`` are the words of a kind, ``kind`` is the name of the rule of these words, which may
+    not exist yet.
     """
 
-    def __init__(
-        self,
-        recognizer: Recognizer,
-        operands: Iterable[tuple[int, ...]],
-        prefixes: frozenset[str] = frozenset(),
-    ) -> None:
+    def __init__(self, recognizer: Recognizer, operands: Iterable[tuple[int, ...]]) -> None:
         """Look at a grammar; ``operands`` of the corpus define what is narrow."""
-        self.prefixes = prefixes
         self.grammar = recognizer.grammar
         self.lexer = recognizer.lexer
         self.rules = OperandRules(recognizer)

@@ -114,7 +114,6 @@ class Induction:
         self._corpus: CorpusLines | None = None
         self._keywords: InferredKeywords | None = None
         self._names: str | None = None
-        self._prefixes: frozenset[str] = frozenset()
         self._tried: set[Edit] = set()
         self._lossy: set[tuple[Edit, ...]] = set()  # folds that lose lines of some file
         self._review: EditReview | None = None
@@ -184,7 +183,7 @@ class Induction:
         known = table.occurrences
         contexts = [finder.context(line.state) for line in known if line.state is not None]
         self._names = OperandRules(recognizer).names
-        self._prefixes = prefixes = keywords.prefixes()
+        prefixes = keywords.prefixes()
         blocks = [] if inner else blocks_of(keywords.corpus, keywords, recognizer, prefixes)
         having = [line.origins for line in known]
         inner_words = keywords.corpus.inner_words
@@ -333,7 +332,7 @@ class Induction:
         refused: dict[str, RefusedStep] = {}
         had = {recognizer.grammar.sha256}
         tried: set[tuple[str, ...]] = set()  # without numbers of alternatives, which a fold changes
-        found = folds_of(GrammarView(recognizer, operands, self._prefixes))
+        found = folds_of(GrammarView(recognizer, operands))
         while fold := next(found, None):
             if fold.title in refused or fold.edits in self.struck | self._lossy:
                 continue
@@ -350,7 +349,7 @@ class Induction:
             taken.append(AcceptedStep(fold.title, fold.edits, Evidence(0, 0, 0, ())))
             had.add(narrower.grammar.sha256)
             review = replace(review, recognizer=narrower)
-            found = folds_of(GrammarView(narrower, operands, self._prefixes))
+            found = folds_of(GrammarView(narrower, operands))
         kept, lost = self.shown.kept(self.grammar, taken, self._names)
         if lost:
             # folds behind it are written for what it leaves: they are sought anew without it
