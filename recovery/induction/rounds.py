@@ -21,6 +21,7 @@ from grammar.notation.edits import (
     Edit,
     Insert,
     MakeOptional,
+    RemoveAlternative,
     Replace,
     Widen,
     apply,
@@ -336,7 +337,7 @@ class Induction:
         while fold := next(found, None):
             if fold.title in refused or fold.edits in self.struck | self._lossy:
                 continue
-            if not self._is_touched(review.recognizer.grammar, fold.edits):
+            if not self._may_restate(review.recognizer.grammar, fold.edits):
                 continue  # what no line needs otherwise is right as it is
             words = described(review.recognizer.grammar, fold.edits)
             if words in tried:
@@ -368,8 +369,13 @@ class Induction:
             taken, lost = self.shown.kept(self.grammar, bounds, self._names)
         return taken, [*lost, *refused.values()]
 
-    def _is_touched(self, grammar: Grammar, edits: Sequence[Edit]) -> bool:
-        """Return whether lines fail in all rules that edits change, or steps have changed them."""
+    def _may_restate(self, grammar: Grammar, edits: Sequence[Edit]) -> bool:
+        """Return whether edits join alternatives only where lines fail or steps have changed some.
+
+        Edits that join none hold by analogy wherever they are.
+        """
+        if not any(isinstance(edit, RemoveAlternative) for edit in edits):
+            return True
         start, now = self._start.by_name, grammar.by_name
         changed = changed_rules(edits) - self._failing_rules
         return all(n not in start or start[n].text != now[n].text for n in changed)
