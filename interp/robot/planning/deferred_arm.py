@@ -84,8 +84,8 @@ class DeferredArm:
             self._arm.forget(time)
 
     def override(self, now: int, percent: float) -> None:
-        """$OV_PRO changes; an invalid one is reported at once."""
-        if self._is_made or not 0.0 <= percent <= 100.0:
+        """$OV_PRO changes."""
+        if self._is_made:
             self._arm.override(now, percent)
         else:
             self._override = now, percent
