@@ -294,7 +294,7 @@ FORM_SYMBOLS = 4
 MOST_MERGED_EDITS = 3
 #: Proposals of a cause that are made in further places, places of each, and the least share of its
 #: lines that they leave for that. Not measured.
-MOST_EXTENDED = 3
+MOST_EXTENDED = 2
 MOST_PLACES = 6
 LEAST_LEFT = 0.05
 #: Causes up to which they are completed: where there are more, lines fail for several, and more

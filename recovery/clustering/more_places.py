@@ -42,7 +42,8 @@ def _extended(search: CauseSearch, proposal: Proposal, lines: Sequence[int]) -> 
         left = [n for n in lines if n not in proposal.mended and n not in proposal.advanced]
         if sum(search.weights[n] for n in left) < LEAST_LEFT * weight:
             break
-        found = search.best_from_scratch(left, is_the_same)
+        search.open, search.is_thorough = set(left), False
+        found = search.best_for(left, is_the_same)
         wider = None
         for other in found.proposals if found else ():
             edits = combined_edits(other.edits, proposal.edits)

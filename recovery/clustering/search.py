@@ -117,11 +117,11 @@ class CauseSearch:
         self._has_words = all(self.lines[n].keywords for n in lines)
         return self._sought
 
-    def best_from_scratch(self, lines: Sequence[int], wanted: Wanted | None = None) -> Cause | None:
+    def best_from_scratch(self, lines: Sequence[int]) -> Cause | None:
         """Return the cause of the heaviest of these lines, as if there were no others."""
         self.is_thorough = True
         self.open = set(lines)
-        return self.best_for(lines, wanted)
+        return self.best_for(lines)
 
     def proposal(self, edits: tuple[Edit, ...], breadth: int) -> Proposal:
         """Return the edits with their result on all lines, whatever the causes of these."""
