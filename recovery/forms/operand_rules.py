@@ -130,6 +130,19 @@ class OperandRules:
             found += [n for n in self.alone(name) if n not in found]
         return tuple(found)
 
+    @cached_property
+    def values(self) -> str | None:
+        """The level with most tokens that have a value: that of literals."""
+        kind_of, has_value = self.lexer.kind_of, self.lexer.has_value
+
+        def count(rule: str) -> int:
+            every = [a.elements for a in self.grammar.by_name[rule].alternatives]
+            single = [e[0] for e in every if len(e) == 1]
+            names = {e.name for e in single if isinstance(e, Reference) and e.is_token}
+            return sum(has_value(kind_of[name]) for name in names)
+
+        return max(self.ladder, key=count, default=None)
+
     def alone(self, name: str) -> Iterator[str]:
         """Rules that a rule may consist of, nothing beside them."""
         for alternative in self.grammar.by_name[name].alternatives:

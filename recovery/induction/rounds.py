@@ -398,7 +398,8 @@ class Induction:
     ) -> AcceptedStep | None:
         """Return a step for what the lexer splits or has no token for; ``None`` without any.
 
-        A sign is first a token, and then what rules may read. It needs as many files as a word.
+        A sign is first a token, and then what rules may read. It needs as many files as a word. A
+        text in quotes is a value as others are.
         """
         lines: list[tuple[str, int]] = []
         for place, (file, of_file) in enumerate(zip(self.shown.files, failures, strict=True)):
@@ -408,7 +409,7 @@ class Induction:
         split = split_literals(lines, recognizer.lexer)
         if split and split[0] not in self._tried:
             edit, places, seen = split
-            step = self._token_step(f"{seen[0]} is one literal", edit, places, seen, least)
+            step = self._token_step(f"{seen[0]} is one literal", (edit,), places, seen, least)
             if step and self.shown.gains(self.grammar, [step]):
                 self._tried.add(edit)  # else lines may still fail ahead of it: it is tried again
                 return step
@@ -416,24 +417,28 @@ class Induction:
         if unknown is None:
             return None
         rule, places, seen = unknown
-        added = AddRule(self.grammar.rules[-1].name, rule)
+        added: tuple[Edit, ...] = (AddRule(self.grammar.rules[-1].name, rule),)
+        name = rule.split()[0]
+        values = OperandRules(recognizer).values
+        if values and "_TEXT" in name:
+            added += (AddAlternative(values, name),)
         enough = least[0], min(INFERRED_FILES, len(self.shown.files))
         return self._token_step(f"{seen[0]} is a token", added, places, seen, enough)
 
     def _token_step(
         self,
         title: str,
-        edit: Edit,
+        edits: tuple[Edit, ...],
         places: Collection[int],
         seen: tuple[str, ...],
         least: tuple[int, int],
     ) -> AcceptedStep | None:
-        """Return a step with the edit of a token if it has evidence and loses no lines."""
+        """Return a step with the edits of a token if it has evidence and loses no lines."""
         origins = frozenset[str]().union(*(self.shown.files[place].origins for place in places))
-        if len(origins) < least[0] or len(places) < least[1] or (edit,) in self.struck:
+        if len(origins) < least[0] or len(places) < least[1] or edits in self.struck:
             return None
         evidence = Evidence(len(places), len(origins), len(seen), seen[:PLACES_SHOWN])
-        kept, _ = self.shown.kept(self.grammar, [AcceptedStep(title, (edit,), evidence)], None)
+        kept, _ = self.shown.kept(self.grammar, [AcceptedStep(title, edits, evidence)], None)
         self._corpus = self._keywords = None
         return kept[0] if kept else None
 

@@ -52,3 +52,12 @@ def test_a_token_is_learnt(toy: Grammar, origins: str, accepted: bool) -> None:
     grown = Recognizer(induction.grammar)
     assert [accepted] * 2 == [grown.accepts(t) for t in ("X := (Y & Z) + 1\n", "GOTO @X\n")]
     assert not grown.accepts("X := & Y\n")
+
+
+def test_a_text_in_quotes_is_a_value(toy: Grammar) -> None:
+    """It stands wherever a number does, not only where lines have shown it."""
+    files = [CorpusFile(o, f"{o} := '{o} {o}'\n", frozenset({o})) for o in "ABC"]
+    induction = Induction(toy, files, (), NegativeSet(()))
+    for _ in induction.rounds():
+        pass
+    assert Recognizer(induction.grammar).accepts("F('X Y', 1 + 'Z')\n")
