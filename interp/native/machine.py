@@ -21,7 +21,7 @@ from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm import executor as vm
 from interp.bytecode.vm.names import InFrame, Names
 from interp.bytecode.vm.services import Services
-from interp.bytecode.vm.state import Call, Completion, Operation, State
+from interp.bytecode.vm.state import Call, Completion, OperandStack, Operation, State
 from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.native._core import Core
 from interp.port.events import Kind, Sink, wanting
@@ -99,6 +99,12 @@ class _Stack:
         core[core.top] = raw
         core.top += 1
 
+    def pop(self) -> Raw | None:
+        """Take the item at the top off, and return it."""
+        core = self._core
+        core.top -= 1
+        return core[core.top]
+
 
 class _Calls:
     """The open calls, as far as Python needs them."""
@@ -124,7 +130,7 @@ class _State(Core):
     base = 0  # where nothing lies on the stack that is not the frame's
 
     def __init__(self, _image: bytes, _traced: int, _most_calls: int, _beside: Core | None) -> None:
-        self.stack = _Stack(self)
+        self.stack: OperandStack = _Stack(self)
         self.calls = _Calls(self)
         self.reader: Reader | None = None
         self.request: Request | None = None

@@ -5,18 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from grammar.semantics.types import INT_MAX, UNKNOWN, Enumeration, Type
+from grammar.semantics.numbers import signed
+from grammar.semantics.types import UNKNOWN, Enumeration, Type
 from grammar.syntax import ast
 from interp.program.load import Unit
 from interp.values.faults import LinkError
 from interp.values.operators import apply_unary
 from interp.values.values import EnumValue, Value, constant, integer, letters, single
-
-
-def _bits(node: ast.BitLiteral) -> int:
-    """Return 32 bits as a signed number [TYP-04]."""
-    return integer(node.value - 2**32 if node.value > INT_MAX else node.value)
-
 
 #: The value of a literal by the class of its node. A number that is too large faults ``overflow``
 #: [ARI-12].
@@ -24,7 +19,7 @@ LITERALS: Final[Mapping[type[Any], Callable[[Any], int | float | bool | str]]] =
     ast.IntegerLiteral: lambda node: integer(node.value),
     ast.RealLiteral: lambda node: single(node.value),
     ast.BoolLiteral: lambda node: node.value,
-    ast.BitLiteral: _bits,
+    ast.BitLiteral: lambda node: integer(signed(node.value)),
     ast.StringLiteral: lambda node: letters(node.text),
     ast.ChannelName: lambda node: letters(node.name.key),
 }

@@ -29,6 +29,7 @@ from dataclasses import field
 from functools import cache
 from typing import Any, Final
 
+from grammar.semantics.numbers import nearest_integer
 from grammar.semantics.predefined import System
 from grammar.semantics.types import (
     AXES,
@@ -83,7 +84,7 @@ def integer(number: int) -> int:
 
 def rounded(number: float) -> int:
     """Return the nearest INT, halves away from zero; faults ``overflow`` [ARI-03, CON-02]."""
-    return integer(int(number + math.copysign(0.5, number)))
+    return integer(nearest_integer(number))
 
 
 # -------------------------------------------------------------------------------- compound values

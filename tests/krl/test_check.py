@@ -302,3 +302,16 @@ def test_a_baseline_that_cannot_be_read_comes_before_fixes(programs: Path, is_th
         assert check(str(programs), "--write-baseline", "known.json") == 0
     assert check(str(programs), "--fix", "--baseline", "known.json") == (1 if is_there else 2)
     assert ("N == 1" in (programs / "A.src").read_text(encoding="utf-8")) is is_there
+
+
+def test_fixes_of_checks_and_of_syntax(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Both are shown and applied, at the places of the file as it was."""
+    text = "DEF A()\n  INT F[5]\n  B(F)\n  IF F[1] = 2 THEN\n  ENDIF\nEND\n{}"
+    called = "DEF B(X[] :OUT)\n  INT X[]\n  X[1] = 2\nEND\n"
+    file = tmp_path / "A.src"
+    file.write_text(text.format(called), encoding="utf-8")
+    assert 1 == check("--diff", str(file))
+    assert "+  B(F[])" in capsys.readouterr().out.splitlines()
+    assert 0 == check("--fix", str(file))
+    after = text.replace("B(F)", "B(F[])").replace("] = 2 THEN", "] == 2 THEN").format(called)
+    assert after == file.read_text(encoding="utf-8")

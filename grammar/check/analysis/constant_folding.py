@@ -1,8 +1,9 @@
 """Constant folding: the values of expressions that are known before a program runs.
 
-Array sizes, steps of FOR, labels of CASE and numbers of inputs and outputs need them. A quotient of
-integers with a remainder is not folded, because the rounding of negative ones is not certain
-[ARI-02]. Comparisons of rounded numbers with == are not folded either [ARI-10].
+Array sizes, steps of FOR, labels of CASE and numbers of inputs and outputs need them. What folds
+has the value that executors compute. No constant is what overflows, a quotient of integers with a
+remainder, as the rounding of negative ones is not certain [ARI-02], and a comparison of rounded
+numbers with == [ARI-10].
 """
 
 from __future__ import annotations
@@ -11,8 +12,9 @@ import operator
 from collections.abc import Callable, Mapping
 
 from grammar.check.analysis.context import Context
+from grammar.semantics.numbers import nearest_integer, nearest_single, signed
 from grammar.semantics.symbols import Kind
-from grammar.semantics.types import INT_MAX, INT_MIN
+from grammar.semantics.types import INT, INT_MAX, INT_MIN, REAL
 from grammar.syntax import ast
 from grammar.syntax.walk import left_chain
 
@@ -26,6 +28,16 @@ _ORDERS: Mapping[str, Callable[[float, float], bool]] = {
     ">=": operator.ge,
 }
 _EQUALITY: Mapping[str, Callable[[Value, Value], bool]] = {"==": operator.eq, "<>": operator.ne}
+_LOGIC: Mapping[str, Callable[[bool, bool], bool]] = {
+    "AND": operator.and_,
+    "OR": operator.or_,
+    "EXOR": operator.xor,
+}
+_ARITHMETIC: Mapping[str, Callable[[float, float], float]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+}
 #: By operator the value of one side that settles it whatever the other side is.
 _SETTLED = {"AND": False, "OR": True}
 
@@ -53,9 +65,11 @@ def integer_of(context: Context, node: ast.Expression | None) -> int | None:
 
 def _value(context: Context, node: ast.Expression) -> Value | None:
     match node:
-        case ast.IntegerLiteral() | ast.BitLiteral():
+        case ast.IntegerLiteral() | ast.RealLiteral():
             return _in_range(node.value)
-        case ast.RealLiteral() | ast.BoolLiteral():
+        case ast.BitLiteral():
+            return _in_range(signed(node.value))
+        case ast.BoolLiteral():
             return node.value
         case ast.StringLiteral():
             return f'"{node.text}"'
@@ -64,10 +78,7 @@ def _value(context: Context, node: ast.Expression) -> Value | None:
         case ast.Parenthesised():
             return constant(context, node.inner)
         case ast.Variable():
-            found = context.found(node.name)
-            if found is None or found.symbol.kind is not Kind.CONSTANT:
-                return None
-            return None if found.symbol.value is None else _value(context, found.symbol.value)
+            return _of_constant(context, node)
         case ast.Unary():
             return _unary(context, node)
         case ast.Binary():
@@ -75,9 +86,26 @@ def _value(context: Context, node: ast.Expression) -> Value | None:
     return None
 
 
-def _in_range(value: int) -> int | None:
-    """Return a number if it fits into 32 bits, where a bit literal may be unsigned."""
-    return value if INT_MIN <= value <= 2 * INT_MAX + 1 else None
+def _of_constant(context: Context, node: ast.Variable) -> Value | None:
+    """Return the value of a CONST, converted to the type that it is declared with."""
+    found = context.found(node.name)
+    symbol = None if found is None else found.symbol
+    if symbol is None or symbol.kind is not Kind.CONSTANT or symbol.value is None:
+        return None
+    value = _value(context, symbol.value)
+    declared = symbol.type.key if symbol.type else ""
+    if isinstance(value, float) and declared == INT.name:
+        return _in_range(nearest_integer(value))
+    if type(value) is int and declared == REAL.name:
+        return _in_range(float(value))
+    return value
+
+
+def _in_range(value: float) -> float | None:
+    """Return a number as an INT or a REAL; ``None`` if it does not fit into 32 bits."""
+    if isinstance(value, float):
+        return nearest_single(value)
+    return value if INT_MIN <= value <= INT_MAX else None
 
 
 def _unary(context: Context, node: ast.Unary) -> Value | None:
@@ -87,7 +115,7 @@ def _unary(context: Context, node: ast.Unary) -> Value | None:
     if isinstance(value, bool):
         return not value if node.operator == "NOT" else None
     if node.operator == "-":
-        return -value
+        return _in_range(-value)
     return value if node.operator == "+" else None
 
 
@@ -108,26 +136,19 @@ def _folded(sign: str, left: Value | None, right: Value | None) -> Value | None:
     if type(left) is type(right) is not float and sign in _EQUALITY:
         return _EQUALITY[sign](left, right)
     if isinstance(left, bool) and isinstance(right, bool):
-        return {"AND": left and right, "OR": left or right, "EXOR": left != right}.get(sign)
+        return _LOGIC[sign](left, right) if sign in _LOGIC else None
     if isinstance(left, str | bool) or isinstance(right, str | bool):
+        return None
+    if isinstance(left, float) or isinstance(right, float):
+        left, right = nearest_single(left), nearest_single(right)  # [ARI-01]
+    if left is None or right is None:
         return None
     if sign in _ORDERS:
         return _ORDERS[sign](left, right)
-    return _calculated(sign, left, right)
-
-
-def _calculated(sign: str, left: float, right: float) -> float | None:
-    value: int | float | None = None
-    match sign:
-        case "+":
-            value = left + right
-        case "-":
-            value = left - right
-        case "*":
-            value = left * right
-        case "/" if right != 0:
-            if isinstance(left, float) or isinstance(right, float):
-                value = left / right
-            elif left % right == 0:
-                value = left // right
-    return _in_range(value) if type(value) is int else value
+    if sign in _ARITHMETIC:
+        return _in_range(_ARITHMETIC[sign](left, right))
+    if sign != "/" or not right:
+        return None
+    if isinstance(left, int) and isinstance(right, int):
+        return None if left % right else _in_range(left // right)
+    return _in_range(left / right)

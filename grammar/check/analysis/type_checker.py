@@ -17,7 +17,7 @@ from typing import Any
 from grammar.check.analysis.constant_folding import integer_of
 from grammar.check.analysis.context import Context
 from grammar.diagnostics.codes import Severity
-from grammar.diagnostics.diagnostic import Diagnostic, Fix
+from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
 from grammar.semantics.assignability import assignable
 from grammar.semantics.scopes import Found, Scope, SystemScope
 from grammar.semantics.symbols import Kind, Symbol
@@ -142,7 +142,7 @@ class TypeChecker:
         if isinstance(to, Enumeration) and isinstance(node, ast.Variable):
             self._note_constant(to, node.name)
         if type(value) is Array and type(node) in _NAMES:
-            brackets = Fix("write empty brackets where the whole array is meant")
+            brackets = self._brackets(to, value, node)
             self.reject("array-without-index", node, without_index(value), brackets)
             return
         verdict = accepts(to, value)
@@ -158,6 +158,14 @@ class TypeChecker:
             self.settle(node, to)
         elif to is REAL and value is INT:
             self._report_quotient(node)
+
+    def _brackets(self, to: Type, array: Array, node: ast.Expression) -> Fix:
+        """Return the fix that passes an array as a whole; an edit where one is wanted."""
+        text = "write empty brackets where the whole array is meant"
+        if not isinstance(to, Array) or len(to.sizes) != len(array.sizes):
+            return Fix(text)
+        end = Region.of(self.context.source, (node.span[1], node.span[1]))
+        return Fix(text, end, f"[{',' * (len(array.sizes) - 1)}]")
 
     def _note_constant(self, to: Enumeration, name: ast.Name) -> None:
         """Record that an undeclared name may be an enumeration constant without its # [TYP-16]."""

@@ -11,7 +11,7 @@ import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from typing import Any
 
-from grammar.check.analysis.accesses import accesses, called_parameters, is_passed_on
+from grammar.check.analysis.accesses import Use, accesses
 from grammar.check.analysis.constant_folding import constant, integer_of
 from grammar.check.analysis.context import Context
 from grammar.check.flow.routine_summaries import Summaries, SummaryCollector
@@ -109,6 +109,7 @@ class _Collector:
         context = self._context
         for routine in context.routines:
             for placed in routine.statements:
+                self._change(placed.statement)
                 rule = _RULES.get(type(placed.statement))
                 if rule is not None:
                     rule(self, placed.statement)
@@ -163,6 +164,12 @@ class _Collector:
 
     # ----------------------------------------------------------------------- statements
 
+    def _change(self, node: ast.Node) -> None:
+        for access in accesses(self._context, node):
+            if access.use is not Use.READ:
+                key = self._key(access.place) if access.place is not None else access.name.key
+                self._changed.add(key)
+
     def interrupt(self, node: ast.InterruptDeclaration) -> None:
         """Record an interrupt with its possible number, and the effects of its action."""
         known = integer_of(self._context, node.number)
@@ -183,15 +190,14 @@ class _Collector:
         if node.number is not None and known is not None and is_priority(known):
             self._switches.append(self._place(node.number, str(known)))
 
-    def loop(self, node: ast.For) -> None:
-        """FOR changes its counter."""
-        self._changed.add(node.counter.key)
-
     def assignment(self, node: ast.Assignment) -> None:
-        """Record the assigned name."""
-        if key := self._key(node.target):
-            self._changed.add(key)
-        self._assigned(node)
+        """Record what is set and what is reset."""
+        key = self._key(node.target).replace("$OUT_C", "$OUT")
+        if constant(self._context, node.value) is not True:
+            self._reset.add(key)
+        elif key.startswith("$OUT[") and key not in self._outputs:
+            shown = self._context.source.text[slice(*node.target.span)]
+            self._outputs[key] = self._place(node, f"{key}\t{shown}")
 
     def values(self, nodes: Iterable[ast.Assignment]) -> None:
         """Visit the assignments after WITH."""
@@ -199,13 +205,11 @@ class _Collector:
             self.assignment(node)
 
     def _later(self, node: ast.Trigger | ast.InterruptDeclaration) -> None:
-        for access in accesses(self._context, node):
-            key = self._key(access.place) if access.place is not None else access.name.key
-            self._changed.add(key)
-            if not isinstance(node.action, ast.Assignment):
-                self._reset.add(key)
         if isinstance(node.action, ast.Assignment):
-            self._assigned(node.action)
+            self.assignment(node.action)
+            return
+        for access in accesses(self._context, node):
+            self._reset.add(self._key(access.place) if access.place else access.name.key)
 
     # --------------------------------------------------------------------------- keys
 
@@ -226,16 +230,6 @@ class _Collector:
             return key
         first = found.symbol.first
         return _written_key(first) if found.symbol.last is None else "$OUT"
-
-    # --------------------------------------------------------------------------- outputs
-
-    def _assigned(self, node: ast.Assignment) -> None:
-        key = self._key(node.target).replace("$OUT_C", "$OUT")
-        if constant(self._context, node.value) is not True:
-            self._reset.add(key)
-        elif key.startswith("$OUT[") and key not in self._outputs:
-            shown = self._context.source.text[slice(*node.target.span)]
-            self._outputs[key] = self._place(node, f"{key}\t{shown}")
 
     # --------------------------------------------------------------------------- waiting
 
@@ -278,15 +272,9 @@ class _Collector:
     # --------------------------------------------------------------------------- calls
 
     def _call(self, node: ast.Call) -> None:
-        found = self._context.found(node.name)
-        known = called_parameters(found)
-        for index, argument in enumerate(node.arguments):
-            if argument is None:
-                continue
-            key = self._key(argument)
-            self._reset.add(key)  # PULSE, and what a routine may do with it
-            if key and is_passed_on(argument, index, known):
-                self._changed.add(key)
+        for argument in node.arguments:
+            if argument is not None:
+                self._reset.add(self._key(argument))  # PULSE, and what a routine may do with it
         self._summaries.call(node)
 
 
@@ -307,7 +295,6 @@ def _written_key(node: ast.Expression) -> str:
 
 _RULES: Mapping[type[Any], Callable[[_Collector, Any], None]] = {
     ast.Assignment: _Collector.assignment,
-    ast.For: _Collector.loop,
     ast.InterruptDeclaration: _Collector.interrupt,
     ast.InterruptSwitch: _Collector.switch,
     ast.Motion: lambda collector, node: collector.values(node.values),

@@ -13,19 +13,23 @@ from grammar.check.names.likely_names import system_typos
 from grammar.check.names.misspelt_declarations import slips_in_file
 from grammar.check.names.unresolved_name import SLUGS, WORDS, declaration_of, home_of
 from grammar.diagnostics.codes import Severity
-from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
 from grammar.diagnostics.did_you_mean import one_of
 from grammar.semantics.link import Project
 from grammar.semantics.resolve import Resolution, Use
 from grammar.semantics.scopes import Found, Module, NotFound, Reason, Undetermined
 from grammar.semantics.symbols import Access, Kind
 from grammar.semantics.types import SCALARS
+from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Tell the names that are certain to be unknown, each once in a file."""
+    """Tell the names that are certain to be unknown, each once in a file.
+
+    Where a # is missing is another mistake at each place.
+    """
     slips = slips_in_file(context)
     yield from slips.values()
     for (space, key), some in context.open_uses.items():
@@ -34,9 +38,10 @@ def check(context: Context) -> Iterator[Diagnostic]:
         if home := home_of(context, space, key):
             yield _local_type(context, some[0], home)
             continue
-        unknown = next((use for use in some if isinstance(use.answer, NotFound)), None)
-        if unknown is not None:
-            yield _unknown(context, space, unknown)
+        unknown = [use for use in some if isinstance(use.answer, NotFound)]
+        unsigned = [use for use in unknown if use.name in context.constants]
+        for use in unsigned or unknown[:1]:
+            yield _unknown(context, space, use)
     yield from _near_system_names(context)
     if lacks_data_list(context.project, context.module, context.resolution):
         message = f"{context.module.name} may have a data list, which is missing"
@@ -72,8 +77,14 @@ def _unknown(context: Context, space: Space, use: Use) -> Diagnostic:
         return context.finding(slug, name, message, reason=_why_hidden(hidden))
     fix = context.suggestions.suggest(name.text, _visible(context, space, name.span))
     if name in context.constants:
-        fix = one_of([context.constants[name]])
+        fix = _sign_added(context, name)
     return context.finding(SLUGS[space], name, f"no {word} is called {name.text}", fix=fix)
+
+
+def _sign_added(context: Context, name: ast.Name) -> Fix:
+    """Return the fix that makes a name the constant of an enumeration."""
+    meant = context.constants[name]
+    return Fix(f"did you mean {meant}?", Region.of(context.source, name.span), meant)
 
 
 def _why_hidden(hidden: Found) -> str:

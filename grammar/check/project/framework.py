@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from grammar.check.analysis.constant_folding import Value
 from grammar.check.analysis.context import Context
 from grammar.check.analysis.spelling import Spelling, spelling_of
-from grammar.check.flow import control_flow, data_flow, entry_points
+from grammar.check.flow import control_flow, data_flow, entry_points, write_protection
 from grammar.check.flow.effects import NO_EFFECTS, Effects, effects
 from grammar.check.flow.effects import of_project as of_effects
 from grammar.check.limits import name_limits, value_limits
@@ -54,6 +54,7 @@ CHECKS: tuple[Check, ...] = (
     value_limits.check,
     entry_points.check,
     data_flow.check,
+    write_protection.check,
     unbalanced_folds.check,
 )
 

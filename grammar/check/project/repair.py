@@ -1,8 +1,8 @@
-"""Repairs syntax errors with the edits of their findings; each edit is tried before it is kept."""
+"""Applies the edits of findings; each is tried before it is kept."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from grammar.check.project.project_check import read_source
@@ -15,19 +15,24 @@ _MOST_STEPS = 4
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """A text after the repair of some findings, which are in the order of the text."""
+    """A text after the repair of some findings: first those of checks, each kind in its order."""
 
     text: str
     mended: tuple[Diagnostic, ...]
 
 
-def repair(source: Source, is_wanted: Callable[[Diagnostic], bool] = lambda _: True) -> Repair:
-    """Apply the edits after which fewer lines of the file cannot be read; no other is kept.
+def repair(
+    source: Source,
+    is_wanted: Callable[[Diagnostic], bool] = lambda _: True,
+    checked: Sequence[Diagnostic] = (),
+) -> Repair:
+    """Apply the edits of syntax errors, and of ``checked``: other findings of the file, in order.
 
-    ``is_wanted`` chooses among the findings. What cannot be mended stays as it is.
+    The former are kept if fewer lines of the file are unreadable afterwards, the latter if no more
+    are. ``is_wanted`` chooses among the findings. What cannot be mended stays as it is.
     """
+    source, mended = _with_edits(source, [one for one in checked if is_wanted(one)])
     found = _wrong(source)
-    mended: list[Diagnostic] = []
     for one in reversed(found):  # from the end, so that the places of the others stay
         done = _mended(source, one, len(found), is_wanted)
         if done is not None:
@@ -35,6 +40,19 @@ def repair(source: Source, is_wanted: Callable[[Diagnostic], bool] = lambda _: T
             mended = [*steps, *mended]
             found = _wrong(source)
     return Repair(source.text, tuple(mended))
+
+
+def _with_edits(source: Source, checked: Sequence[Diagnostic]) -> tuple[Source, list[Diagnostic]]:
+    """Return the text after the edits of findings of lines that can be read."""
+    before = _wrong(source)
+    unread = {one.region for one in before}
+    kept: list[Diagnostic] = []
+    for one in reversed(checked):
+        text = None if one.region in unread else edited(source, one)
+        if text is not None and len(_wrong(Source(text, source.path))) <= len(before):
+            source = Source(text, source.path)
+            kept.insert(0, one)
+    return source, kept
 
 
 def _mended(

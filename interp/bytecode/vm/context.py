@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from interp.bytecode.program import Instruction, Program
-from interp.bytecode.vm.state import Operation, State
+from interp.bytecode.vm.state import OperandStack, Operation, State
 
 #: Makes an operation from the site and the operands of an instruction.
 Rule = Callable[..., Operation]
@@ -92,7 +92,7 @@ class Rules:
 
 
 def computed(
-    compute: Callable[..., Any], count: int, stack: list[Any], after: Operation
+    compute: Callable[..., Any], count: int, stack: OperandStack, after: Operation
 ) -> Operation:
     """Return an operation that replaces one or two operands on the stack by a function of them."""
     if count == 1:

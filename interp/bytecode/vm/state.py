@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Optional
+from typing import Any, Optional, Protocol
 
 from interp.bytecode.cell_layout import Raw
 from interp.port.executor import Reader
@@ -17,6 +17,18 @@ Completion = Callable[[Any], Operation | None]
 #: ``statement`` and ``serial`` of the state. A tuple, because calls are frequent and creating any
 #: other object takes three times as long.
 Call = tuple[Operation, int, int, int, int, int]
+
+
+class OperandStack(Protocol):
+    """What requests and functions do with the operand stack, whatever machine it is of."""
+
+    def __getitem__(self, where: int, /) -> Any: ...
+    def __setitem__(self, where: int, value: Any, /) -> None: ...
+    def append(self, value: Any, /) -> None:
+        """Push an item."""
+
+    def pop(self) -> Any:
+        """Take the item at the top off, and return it."""
 
 
 class State:

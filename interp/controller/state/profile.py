@@ -15,6 +15,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar
 
+from grammar.semantics.predefined import System
 from interp.values.faults import RuntimeFailure
 from support.files.untrusted import DocumentError, read_text, toml_of
 from support.lazy_dataclass import dataclass
@@ -122,7 +123,7 @@ def _read(name: str, text: str) -> Profile:
         reader.count("submit", "requests"),
         reader.counts("sizes", _SIZES),
         reader.counts("most", _MOST),
-        {key.upper(): value for key, value in reader.get("", "values", dict).items()},
+        reader.values(),
     )
 
 
@@ -167,6 +168,14 @@ class _Reader:
         if value > _LARGEST:
             raise self.wrong(table, key, f"is above {_LARGEST:,}")
         return value
+
+    def values(self) -> Mapping[str, Any]:
+        """Return the initial values of system variables, by their names in upper case."""
+        values = self.get("", "values", dict)
+        known = System.load().variables
+        if unknown := [name for name in values if name.upper() not in known]:
+            raise self.wrong("values", unknown[0], "is no variable of the controller")
+        return {name.upper(): value for name, value in values.items()}
 
     def counts(self, table: str, needed: Iterable[str]) -> Mapping[str, int]:
         """Return a table of counts, which must have the entries ``needed``."""

@@ -6,7 +6,7 @@
 #include "machine.h"
 
 /* Returns the offset of an element in row-major order, in elements, or -1 if an index is out of
- * range. The indices must have values. */
+ * range [TYP-09]. The indices must have values. */
 static inline int32_t krl_flat_place(const int32_t *sizes, int32_t dimensions,
                                      const krl_cell *indices)
 {
@@ -57,7 +57,7 @@ static inline int krl_fill_array(krl_cell *cells, const krl_cell *target, const 
     return KRL_FINE;
 }
 
-/* Stores as much of a text as fits. The cells after it lose their values. */
+/* Stores as much of a text as fits [TYP-11]. The cells after it lose their values. */
 static inline void krl_set_text(krl_cell *target, int32_t length, const struct krl_letters *text)
 {
     int32_t count = text->count < length ? text->count : length;

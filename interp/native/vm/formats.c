@@ -1,4 +1,4 @@
-/* SWRITE and SREAD, as in interp/values/formats.py, which describes the formats. Python executes
+/* SWRITE and SREAD [FCT-09], as in interp/values/formats.py, which describes the formats. Python executes
  * assignments that may be refused, calls in which one text is read and written, and values of
  * structures: in these cases nothing has been done here. */
 #include "formats.h"

@@ -15,7 +15,7 @@ static const double PI = 3.141592653589793;
  * to 1, is shorter than this. */
 static const double UPRIGHT = 1e-6;
 
-/* Converts degrees to radians, modulo 360 first: that is exact for large angles. */
+/* Converts degrees [FCT-02] to radians, modulo 360 first: that is exact for large angles. */
 static double radians(double degrees)
 {
     return fmod(degrees, 360.0) * DEGREE;
@@ -109,7 +109,7 @@ static float angle(double radians)
     return degrees == -180.0f ? 180.0f : degrees + 0.0f;
 }
 
-/* Computes A, B, C, in degrees, from a rotation matrix. */
+/* Computes A, B, C [ARI-09], in degrees, from a rotation matrix. */
 static void angles(const double *m, float *result)
 {
     double across = m[3], along = m[0];

@@ -78,7 +78,7 @@ typedef krl_cell krl_register;
         if (UNLIKELY((machine->functions -= KRL_WEIGHT_##name) < 0))                               \
             return KRL_OVERRUN;                                                                    \
     } while (0)
-/* Faults if what is read has no value. In native code the C compiler drops the check where it knows
+/* Faults if what is read has no value [TYP-13]. In native code the C compiler drops the check where it knows
  * the tag. */
 #define READ(name, place)                                                                          \
     krl_register name = (place);                                                                   \
@@ -87,6 +87,7 @@ typedef krl_cell krl_register;
 
 /* ---------------------------------------------------------------------------- arithmetic */
 
+/* What an INT cannot hold is a fault [ARI-12]. */
 #if defined(__GNUC__)
 #define adds(a, b, result) __builtin_add_overflow(a, b, result)
 #define subtracts(a, b, result) __builtin_sub_overflow(a, b, result)
@@ -102,8 +103,8 @@ static inline int overflows(int64_t wide, int32_t *result)
 #define multiplies(a, b, result) overflows((int64_t)(a) * (b), result)
 #endif
 
-/* Rounds to the nearest INT, halves away from zero. Returns 1 if that is out of range. The half is
- * added in double precision, because the sum in single precision would be rounded. */
+/* Rounds to the nearest INT, halves away from zero [ARI-03]. Returns 1 if that is out of range. The
+ * half is added in double precision, because the sum in single precision would be rounded. */
 static inline int rounds(float number, int32_t *result)
 {
     double wide = number >= 0 ? (double)number + 0.5 : (double)number - 0.5;
@@ -235,7 +236,7 @@ static inline int rounds(float number, int32_t *result)
         A = found;                                                                                 \
         NEXT();                                                                                    \
     }
-/* Indices count from 1. One unsigned comparison also excludes 0 and negative indices. */
+/* Indices count from 1 [TYP-09]. One unsigned comparison also excludes 0 and negative indices. */
 #define FIND_ONE                                                                                   \
     READ(index, B);                                                                                \
     uint32_t number = (uint32_t)INT(index) - 1;                                                    \
@@ -541,7 +542,7 @@ INT_STEP(SUB_INT, subtracts)
 INT_STEP(MUL_INT, multiplies)
 INT_STEP_K(ADD_INT_K, adds)
 INT_STEP_K(MUL_INT_K, multiplies)
-STEP(DIV_INT)
+STEP(DIV_INT) /* the fraction is dropped [ARI-02] */
 {
     READ_BOTH;
     int32_t divisor = INT(c);

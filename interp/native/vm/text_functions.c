@@ -1,4 +1,4 @@
-/* The text functions, as in interp/values/texts.py. Python executes those that return structures. */
+/* The text functions [FCT-04 to FCT-06], as in interp/values/texts.py. Python executes those that return structures. */
 #include "formats.h"
 
 struct known {

@@ -146,7 +146,9 @@ def check(
 
         if known and not write_baseline:
             read_baseline(known)  # what is wrong with it is told before files are changed
-        is_changed = fix_files(paths, check_.is_wanted, agreed.leaves_out, is_shown=diff)
+        is_changed = fix_files(
+            paths, check_.findings(), check_.is_wanted, agreed.leaves_out, is_shown=diff
+        )
         if diff:
             return FINDINGS if is_changed else FINE
     if write_baseline:
@@ -215,6 +217,10 @@ class _Check:
         write_json(known.record(), file, 1)
         sum_up(counts, report, ", all known from now on")
         return FINE
+
+    def findings(self) -> "Iterator[Diagnostic]":
+        """Yield all wanted findings in order."""
+        return (found for found, _ in self._kept(self._report()))
 
     def is_wanted(self, found: "Diagnostic") -> bool:
         """Return whether a finding is reported, apart from the baseline."""

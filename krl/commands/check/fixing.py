@@ -1,7 +1,8 @@
 """`krl check --fix`: applies the fixes that are certain, or shows them as a diff."""
 
 import difflib
-from collections.abc import Callable, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 def fix_files(
     paths: Sequence[Path],
+    checked: "Iterable[Diagnostic]",
     is_wanted: "Callable[[Diagnostic], bool]",
     leaves_out: "Callable[[Found], bool]",
     *,
@@ -24,12 +26,17 @@ def fix_files(
 ) -> bool:
     """Fix the files below some paths, or show the differences; return whether there were any.
 
-    Encoding, line ends and all other lines stay as they are. Archives are not changed.
+    ``checked`` are the findings of these files. Encoding, line ends and all other lines stay as
+    they are. Archives are not changed.
     """
     from grammar.check.project.repair import repair
     from grammar.syntax.source import Source
     from support.files.discovery import Found, IngestError, Skipped, discover, read_source
 
+    by_path: dict[str, list[Diagnostic]] = defaultdict(list)
+    for one in checked:
+        if one.fix is not None and one.fix.is_edit:
+            by_path[one.path].append(one)
     is_changed = False
     with as_input_errors(IngestError):
         for found in discover(paths):
@@ -38,7 +45,7 @@ def fix_files(
             file = read_source(found)
             if isinstance(file, Skipped):
                 continue
-            done = repair(Source(file.text, file.path), is_wanted)
+            done = repair(Source(file.text, file.path), is_wanted, by_path[found.path])
             if not done.mended:
                 continue
             is_changed = True

@@ -51,6 +51,7 @@ def test_file(tmp_path: Path) -> None:
         ("inputs = 8192", "inputs = 8_192_000_000", "profile x: sizes.inputs is above 10,000,000"),
         ('"kr6r900"', '"../kr6r900"', "profile x: machine is no name of letters, digits and _"),
         ('"kr6r900"', '"a\\u0000"', "profile x: machine is no name of letters, digits and _"),
+        ('"$OV_PRO"', '"$OV_PROO"', "profile x: values.$OV_PROO is no variable of the controller"),
         ("start = 2020", "start = 9020", "profile x: time.start is after 9000"),
         ('"assumed" ', '"never" ', 'profile x: advance.coincidence is neither "assumed" nor "run"'),
     ],

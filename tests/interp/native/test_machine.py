@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import operator
 import re
 import weakref
 from functools import partial
@@ -20,6 +21,7 @@ from interp.bytecode.compiler import compile_program
 from interp.bytecode.image.writer import write_image
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm import executor as vm
+from interp.bytecode.vm.context import computed
 from interp.executors import Prepared
 from interp.port.requests import End, StopAdvance, Write
 from interp.program.load import Limits, load
@@ -66,6 +68,18 @@ def test_companions_share_the_data_lists(native: type[vm.Machine]) -> None:
     del one
     gc.collect()
     assert isinstance(other.advance(), End)
+
+
+def test_python_takes_two_operands_off_the_stack_of_c(native: type[vm.Machine]) -> None:
+    """So it computes functions of two numbers that C does not know."""
+    text = _SHARED.replace("  ADD_CONSTANT 10\n", "  PUSH_INT 10\n  ADD_INT\n")
+    machine = native(verify(assemble(text)), "MAIN")
+    machine.advance()
+    stack = machine._state.stack
+    for operand in (7, 3):
+        stack.append(operand)
+    computed(operator.sub, 2, stack, lambda: None)()
+    assert (len(stack), stack[-1]) == (1, 4)
 
 
 def test_memory_is_given_back(native: type[vm.Machine]) -> None:

@@ -6,6 +6,7 @@ import pytest
 
 from grammar.check.project.project_check import read_source
 from grammar.check.project.repair import repair
+from grammar.diagnostics.diagnostic import Fix, Region, diagnose
 from grammar.syntax.source import Source
 
 RIGHT = """DEF WORK()
@@ -46,6 +47,18 @@ def test_what_is_not_wanted_stays() -> None:
     """Findings that were chosen away are not mended."""
     text = RIGHT.replace("==", "=")
     assert text == repair(Source(text), lambda _: False).text
+
+
+def test_edits_of_checks() -> None:
+    """What a check would write is written, beside what a syntax error would."""
+    text = RIGHT.replace("== 3", "= 3").replace("TURN(N, 2)", "TURN(N, F)")
+    at = text.splitlines().index("  TURN(N, F)") + 1
+    end = Region(at, 12, at, 12)
+    found = diagnose("array-without-index", "", end, "", fix=Fix("", end, "[]"))
+    done = repair(Source(text), checked=[found])
+    assert done.text == RIGHT.replace("TURN(N, 2)", "TURN(N, F[])")
+    spoiling = diagnose("array-without-index", "", end, "", fix=Fix("", end, "["))
+    assert "TURN(N, F)" in repair(Source(text), checked=[spoiling]).text
 
 
 @pytest.mark.parametrize("seed", range(40))
