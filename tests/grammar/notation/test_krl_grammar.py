@@ -25,7 +25,7 @@ def test_a_changed_grammar_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_every_keyword_can_name_a_constant_of_an_enumeration() -> None:
-    """A new one belongs in the rule ``keyword``, or programs that have it as a constant are lost."""
+    """A new one belongs in the rule ``keyword``, or programs with such a constant are lost."""
     lexer = lexer_of(module.krl_grammar())
     words = [word for kind, word in enumerate(lexer.display) if lexer.is_keyword(kind)]
     unread = [w for w in words if isinstance(read_module(f"DEF A()\n  X = #{w}\nEND\n"), list)]
