@@ -69,16 +69,17 @@ class _SessionEnded(Exception):
 
 
 class Debugger(Inspection):
-    """Debugs the runs of one program; it stops before the first statement.
+    """Debugs the runs of one program.
 
-    ``log`` receives the texts of log points.
+    ``log`` receives the texts of log points. With ``stops_at_entry`` each session stops before its
+    first statement.
     """
 
     def __init__(
         self, program: CheckedProgram, client: Client, log: Callable[[str], None] = print
     ) -> None:
         super().__init__(program)
-        self.stops_at_faults = True
+        self.stops_at_entry = self.stops_at_faults = True
         self.breakpoints = Breakpoints(program)
         self.watches = Watches(self)
         self._client = client
@@ -222,7 +223,8 @@ class Debugger(Inspection):
         task, at = executor.task, executor.at
         if not self._is_begun:
             self._is_begun = True
-            return Stop("entry", task, at)
+            if self.stops_at_entry:
+                return Stop("entry", task, at)
         if self._is_selected:
             self._is_selected = False
             return Stop("selected", task, at)

@@ -188,6 +188,7 @@ class Debuggee:
                 self._connection.event("terminated")
 
     def _ran(self, prepare: Callable[[Debugger], None]) -> RunResult | None:
+        self.debugger.stops_at_entry = self.stops_on_entry
         prepare(self.debugger)
         with expected_errors(self._options.robot):
             return debugged_run(
@@ -201,9 +202,7 @@ class Debuggee:
         """Wait for the client's next command, on the thread of the program."""
         if self._is_leaving or self._is_restarting:
             return Quit()
-        if (stop.reason == "entry" and not self.stops_on_entry) or (
-            stop.reason == "ended" and not self.stops_at_end
-        ):
+        if stop.reason == "ended" and not self.stops_at_end:
             return Go()
         self.stop, self.variables = stop, Variables(debugger)
         self._stopped.set()

@@ -185,6 +185,16 @@ def test_a_session_forwards_and_back(client: Client, project: Path) -> None:
     client.do("disconnect")
 
 
+@pytest.mark.parametrize(("is_stopping", "reason"), [(False, "breakpoint"), (True, "entry")])
+def test_the_first_statement(client: Client, project: Path, is_stopping: bool, reason: str) -> None:
+    """A breakpoint at it stops like any other; a stop at the entry stands for both."""
+    begun(client, project, {"line": 4}, {"line": 8}, stopOnEntry=is_stopping)
+    assert reason == client.wait("stopped")["reason"]
+    assert 4 == client.do("stackTrace", threadId=1)["stackFrames"][0]["line"]
+    assert ("breakpoint", 8) == client.stopped("continue", threadId=1)
+    client.do("disconnect")
+
+
 def test_variables_are_trees_that_can_be_changed(client: Client, project: Path) -> None:
     """Structures and arrays open, long arrays by pages; members, inputs and data can be set."""
     begun(client, project, {"line": 13})
