@@ -371,7 +371,8 @@ def _checked(
     spelling = spelling_of(unit.source for unit in units.values())
     for one in check_project(findings, files, spelling) if strict else ():
         if one.severity == "error":
-            raise LinkError(f"{one.path}:{one.region.line}: {one.message}")
+            where = "" if one.path == main else f"; it is in the project of {main}"
+            raise LinkError(f"{one.path}:{one.region.line}: {one.code}: {one.message}{where}")
     first = next(unit for module, unit in units.items() if module.path == main)
     return CheckedProgram(project, first, units, strict, stand_ins)
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import chain
 
 from grammar.diagnostics.diagnostic import Region
-from grammar.diagnostics.expected_tokens import names
+from grammar.diagnostics.expected_tokens import is_reserved, names
 from grammar.semantics.link import words_of
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Answer, Found
@@ -90,6 +90,8 @@ def renaming(
         raise RenameError("no file of the project declares it")
     if not _NAME.fullmatch(name):
         raise RenameError(f"{name} is no name: a letter, then at most 23 letters, digits, _ or $")
+    if is_reserved(name.upper()):
+        raise RenameError(f"{name} is a keyword")
     symbol, module = found.symbol, found.module
     if symbol.kind is Kind.ROUTINE and symbol.key == module.name:
         raise RenameError(f"{symbol.name} is named as its file, which has to be renamed with it")

@@ -148,6 +148,7 @@ def test_a_routine_is_renamed_in_all_files(project: OpenProject) -> None:
     [
         ("PARTS", "1ST", "is no name"),
         ("PARTS", "A" * 25, "is no name"),
+        ("PARTS", "endfor", "endfor is a keyword"),
         ("PARTS", "COUNT", "has a COUNT already"),
         ("PARTS", "FETCH", "has a FETCH already"),
         ("CELL", "ROOM", "named as its file"),

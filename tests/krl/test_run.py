@@ -665,3 +665,12 @@ def test_a_run_that_is_ended_keeps_its_trace(tmp_path: Path, number: signal.Sign
         assert 128 + number == run.wait(60)
     assert ["t.jsonl"] == [one.name for one in out.iterdir()]
     assert all(map(json.loads, (out / "t.jsonl").read_text(encoding="utf-8").splitlines()))
+
+
+def test_strict_is_about_the_whole_project(run: Run, tmp_path: Path) -> None:
+    """An error of another file is told with its code, and that it belongs to the same project."""
+    (tmp_path / "other.src").write_text("DEF OTHER()\nINT I\nI=TRUE\nEND\n", encoding="utf-8")
+    status, _, err = run("HALT\n", "--strict")
+    assert (status, err.count("\n")) == (2, 1)
+    assert err.startswith("krl: other.src:3: ")
+    assert "in the project of main.src" in err
