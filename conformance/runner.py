@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import os
 import signal
+import tempfile
 import threading
 import time
+import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 from platform import node
 from typing import Final, NoReturn
 
@@ -29,10 +32,16 @@ from support.parallel.workers import WorkersError
 
 #: The number of cases that a process receives at once.
 _SHARE: Final = 8
-#: The limit of processor time for a case in s; all cases need at most a few seconds.
-_COMPUTING: Final = 60.0
+#: The limits of processor time and of wall-clock time for a case on one executor and robot, in s.
+#: All cases need at most a few seconds.
+_COMPUTING: Final = 20.0
+_LASTING: Final = 120.0
 
 Observe = Callable[[Case, Setup], Observation]
+
+
+class Stopped(BaseException):
+    """What a signal handler raises to end `run_cases` early."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,13 +82,15 @@ def run_case(
 ) -> CaseResult:
     """Run one case. ``see`` observes it, ``absent`` says why a setup is not available.
 
-    An executor that needs more than ``most`` seconds of processor time has failed, whatever the
-    case is about. This is measured only in the main thread of a process on a POSIX system.
+    An executor that needs more than ``most`` seconds of processor time, or takes longer than two
+    minutes, has failed, whatever the case is about; the case is then not run on the setups after
+    it. This is measured only in the main thread of a process on a POSIX system.
     """
     wanted = setups if case.phase == "run" else (Setup(FRONT, "none"),)
     results: list[Result] = []
+    endless = ""
     for setup in wanted:
-        lacking = absent(setup) if case.phase == "run" else ""
+        lacking = endless or (absent(setup) if case.phase == "run" else "")
         if lacking:
             results.append(Result(setup.executor, setup.robot, "skipped", lacking, (), 0.0))
             continue
@@ -88,51 +99,81 @@ def run_case(
         checks = _checks(case, seen)
         listed = known.reason(case.name, setup.executor, setup.robot)
         verdict, reason = verdict_of(checks, listed)
+        if verdict == "fail" and seen.ending == "crash":
+            reason = f"crash: {seen.note}"
         took = time.perf_counter() - begun
+        if seen.ending == "crash" and took > most:
+            endless = f"it does not end on {setup.executor}/{setup.robot}"
         result = Result(setup.executor, setup.robot, verdict, reason, checks, took, None, seen)
         results.append(_compared(result, results))
     return CaseResult(case, tuple(results))
 
 
-class _ComputingOver(BaseException):
-    """A case needs too much time; a ``BaseException``, so that no handler in a run catches it."""
+class _TimeOver(BaseException):
+    """A case needs too much time; a ``BaseException``, so that no handler in a run catches it.
+
+    The message says how much it took.
+    """
 
 
 @contextmanager
-def _computing_at_most(seconds: float) -> Iterator[None]:
-    """Raise `_ComputingOver` if the context needs more than ``seconds`` of processor time."""
+def _limited(computing: float, lasting: float) -> Iterator[None]:
+    """Raise `_TimeOver` if the context needs more seconds of processor or wall-clock time."""
     is_main = threading.current_thread() is threading.main_thread()
     if not is_main or not hasattr(signal, "setitimer"):
         yield
         return
-    end = time.process_time() + seconds
-    before = signal.signal(signal.SIGPROF, _end_computing)
-    try:
-        signal.setitimer(signal.ITIMER_PROF, seconds, 1.0)  # repeats, if a callback swallows it
+    limits = (
+        (signal.SIGPROF, signal.ITIMER_PROF, computing, time.process_time, " of computing"),
+        (signal.SIGALRM, signal.ITIMER_REAL, lasting, time.monotonic, ""),
+    )
+    with ExitStack() as stack:
+        for number, timer, seconds, clock, kind in limits:
+            stack.enter_context(_timer(number, timer, seconds, clock, f"{seconds:g} seconds{kind}"))
         yield
-        if time.process_time() > end:  # the timer may be late
-            raise _ComputingOver
+
+
+@contextmanager
+def _timer(
+    number: int, timer: int, seconds: float, clock: Callable[[], float], told: str
+) -> Iterator[None]:
+    """Raise `_TimeOver` by a signal when the clock of a timer has advanced by ``seconds``."""
+
+    def end(_signal: int, _frame: object) -> NoReturn:
+        raise _TimeOver(told)
+
+    latest = clock() + seconds
+    before = signal.signal(number, end)
+    try:
+        signal.setitimer(timer, seconds, 1.0)  # repeats, if a callback swallows it
+        yield
+        if clock() > latest:  # the timer may be late
+            raise _TimeOver(told)
     finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGPROF, before)
-
-
-def _end_computing(_signal: int, _frame: object) -> NoReturn:
-    raise _ComputingOver
+        signal.setitimer(timer, 0)
+        signal.signal(number, before)
 
 
 def observed_within(
     case: Case, setup: Setup, most: float = _COMPUTING, see: Observe = observe
 ) -> Observation:
-    """Return what was observed of a case within ``most`` seconds; an exception is a crash."""
+    """Return what was observed of a case in ``most`` s of computing; an exception is a crash."""
     try:
-        with _computing_at_most(most):
+        with _limited(most, _LASTING):
             return see(case, setup)
-    except _ComputingOver:
-        reason = f"{case.name} takes more than {most:g} seconds of computing"
+    except _TimeOver as error:
+        reason = f"it takes more than {error}"
     except Exception as error:
-        reason = f"{type(error).__name__}: {error}"
+        reason = _told(error)
     return Observation(ending="crash", note=reason, robot=setup.robot)
+
+
+def _told(error: Exception) -> str:
+    """Return an exception with the file and line that raised it, or that cannot be compiled."""
+    if isinstance(error, SyntaxError):  # its text has the place
+        return f"{type(error).__name__}: {error}"
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{type(error).__name__}: {error} ({Path(place.filename).name}:{place.lineno})"
 
 
 def _checks(case: Case, seen: Observation) -> tuple[Check, ...]:
@@ -140,18 +181,22 @@ def _checks(case: Case, seen: Observation) -> tuple[Check, ...]:
     try:
         return tuple(evaluate(case, seen))
     except Exception as error:
-        reason = f"the evaluation has failed: {type(error).__name__}: {error}"
+        reason = f"the evaluation has failed: {_told(error)}"
         return (Check(case.main, 0, "the case can be evaluated", "unmet", reason, case.may_fail),)
 
 
 def _compared(result: Result, before: Iterable[Result]) -> Result:
-    """Compare a result with the first one on the same robot, or else with the first of all."""
-    ran = [one for one in before if one.observation is not None]
-    if not ran or result.observation is None:
+    """Compare a result with the first one on the same robot, or else with the first of all.
+
+    What crashed has failed by itself, and is not compared.
+    """
+    ran = [one for one in before if _has_ended(one)]
+    if not ran or not _has_ended(result):
         return result
     first = next((one for one in ran if one.robot == result.robot), ran[0])
     names = (f"{first.executor}/{first.robot}", f"{result.executor}/{result.robot}")
-    assert first.observation is not None, "only what ran was kept"
+    assert first.observation is not None, "only what ended was kept"
+    assert result.observation is not None, "it has ended"
     seen = first.observation, result.observation
     if first.robot != result.robot:  # programs may read measured positions, which differ by robot
         seen = _without_values(seen[0]), _without_values(seen[1])
@@ -161,13 +206,18 @@ def _compared(result: Result, before: Iterable[Result]) -> Result:
     return replace(result, verdict="fail", reason=str(found), divergence=found)
 
 
+def _has_ended(result: Result) -> bool:
+    return result.observation is not None and result.observation.ending != "crash"
+
+
 def repeated(run: Callable[[], CaseResult]) -> CaseResult:
     """Run a case, and once more if it has failed; it stays failed, and is reported as flaky.
 
     A run does not depend on time or chance, so a case that passes the second time has a defect too.
+    A case that does not end is not run again.
     """
     first = run()
-    if first.verdict != "fail":
+    if first.verdict != "fail" or any(one.seconds > _COMPUTING for one in first.results):
         return first
     results = [
         replace(one, reason=f"flaky, {other.verdict} when run again: {one.reason}")
@@ -191,13 +241,15 @@ def run_cases(
     jobs: int | None = None,
     on_done: Callable[[int], None] = lambda _count: None,
     scheduler: str | None = None,
+    on_stopped: Callable[[list[str]], object] = lambda _running: None,
 ) -> list[CaseResult]:
     """Run cases in ``jobs`` processes, by default one per core; return results in their order.
 
     ``scheduler`` is the address of a Dask cluster that runs them instead. ``on_done`` is called
     with the number of finished cases. A case that kills its process has failed, but does not affect
-    others. Raises `support.parallel.workers.WorkersError`, also if a worker lacks a setup that is
-    available here.
+    others. If a signal handler raises `Stopped`, ``on_stopped`` is called with the cases that were
+    running here, each with its setup, and the results are those of the first cases. Raises
+    `support.parallel.workers.WorkersError`, also if a worker lacks a setup that is available here.
     """
     listed = known if known is not None else KnownFailures.load()
     setups = tuple(Setup(executor, robot) for robot in robots for executor in executors)
@@ -206,36 +258,69 @@ def run_cases(
     wanted = max(1, min(jobs or os.cpu_count() or 1, len(shares)))
     if wanted == 1:
         shares = [[case] for case in cases]  # nothing is sent anywhere, and progress is seen
-
-    def lost(
-        share: Sequence[Case], lacking: Mapping[Setup, str], known: KnownFailures
-    ) -> list[CaseResult]:
-        """Run each case by itself, because one of them killed its process."""
-        singles = (([case], lacking, known) for case in share)
-        found = ordered_map(_run_share, singles, jobs=2, scheduler=scheduler, lost=_process_died)
-        return [result for results in found for result in results]
-
     done: list[CaseResult] = []
-    tasks = ((share, lacking, listed) for share in shares)
-    for results in ordered_map(_run_share, tasks, jobs=wanted, scheduler=scheduler, lost=lost):
-        done += results
-        on_done(len(results))
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
+        notes = Path(name) if scheduler is None else None
+        tasks = ((share, lacking, listed, notes) for share in shares)
+        lost = partial(_run_singly, scheduler=scheduler)
+        try:
+            for results in ordered_map(
+                _run_share, tasks, jobs=wanted, scheduler=scheduler, lost=lost
+            ):
+                done += results
+                on_done(len(results))
+        except Stopped:
+            running = sorted(Path(name).iterdir())
+            on_stopped([one.read_text(encoding="utf-8") for one in running])
     return done
 
 
 def _run_share(
-    cases: Sequence[Case], lacking: Mapping[Setup, str], known: KnownFailures
+    cases: Sequence[Case],
+    lacking: Mapping[Setup, str],
+    known: KnownFailures,
+    notes: Path | None,
 ) -> list[CaseResult]:
-    """Run cases with setups; ``lacking`` says for each why the caller does not have it, or ""."""
+    """Run cases with setups; ``lacking`` says for each why the caller does not have it, or "".
+
+    A file in the folder ``notes`` says what this process is running.
+    """
     for setup, why in lacking.items():
         if not why and missing(setup):
             raise WorkersError(f"a worker on {node()} lacks what is here: {missing(setup)}")
-    setups, absent = tuple(lacking), lacking.__getitem__
-    return [repeated(partial(run_case, case, setups, known, absent=absent)) for case in cases]
+    note = None if notes is None else notes / str(os.getpid())
+
+    def see(case: Case, setup: Setup) -> Observation:
+        if note is not None:
+            note.write_text(f"{case.name} on {setup.executor}/{setup.robot}", encoding="utf-8")
+        return observe(case, setup)
+
+    run = partial(run_case, setups=tuple(lacking), known=known, see=see, absent=lacking.__getitem__)
+    done = [repeated(partial(run, case)) for case in cases]
+    if note is not None:
+        note.unlink(missing_ok=True)
+    return done
+
+
+def _run_singly(
+    share: Sequence[Case],
+    lacking: Mapping[Setup, str],
+    known: KnownFailures,
+    notes: Path | None,
+    *,
+    scheduler: str | None,
+) -> list[CaseResult]:
+    """Run each case by itself, because one of them killed its process."""
+    singles = (([case], lacking, known, notes) for case in share)
+    found = ordered_map(_run_share, singles, jobs=2, scheduler=scheduler, lost=_process_died)
+    return [result for results in found for result in results]
 
 
 def _process_died(
-    cases: Sequence[Case], lacking: Mapping[Setup, str], _known: KnownFailures
+    cases: Sequence[Case],
+    lacking: Mapping[Setup, str],
+    _known: KnownFailures,
+    _notes: Path | None,
 ) -> list[CaseResult]:
     reason = "the process died"
     failed = tuple(Result(one.executor, one.robot, "fail", reason, (), 0.0) for one in lacking)

@@ -3,11 +3,13 @@
 import os
 import re
 import shutil
+import sqlite3
 import sys
+import tempfile
 import time
 from collections import deque
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -15,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
 from krl.extras import ARM, need
 from krl.terminal.output_files import check_files, write_json
 
@@ -76,26 +78,71 @@ def nightly(
     or case that fails is tried once more. DIR/DATE/summary.md is a summary for an issue or an
     e-mail, DIR/index.html leads to the last run. Pages of the last 30 runs are kept, records for a
     year, cached results of the last run only. On a terminal each step shows its progress. Exit
-    status 1 if a step or a case fails, a law is broken, executors diverge, or a bench is far worse
-    than before: a share by 0.1, or a ratio by a factor of 2.
+    status 1 if a step or a case fails, cases of the last run have vanished, a law is broken,
+    executors diverge, or a bench is far worse than before: a share by 0.1, or a ratio by a factor
+    of 2; also if no time was left for a step.
     """
     name = date or f"{datetime.now(UTC):%Y-%m-%d}"
     if not name.replace("-", "").replace(".", "").isalnum():
         raise InputError(f"--date: {name!r} cannot be the name of a folder")
-    check_files(history)
     if not only:
         need(*ARM)
     folder = out / name
-    folder.mkdir(parents=True, exist_ok=True)
     steps = [one for one in _steps(paths or [Path("corpus")], folder, minutes) if _is_in(one, only)]
     if not steps:
         raise InputError(f"there is no step {', '.join(only or ())}")
+    _check_history(history)
+    with _alone(out):
+        return _run(steps, folder, history, minutes, memory * 1_000_000)
+
+
+def _check_history(history: Path) -> None:
+    """Raise `InputError` if the history cannot be read or replaced."""
+    check_files(history)
+    with as_input_errors(OSError):
+        if history.exists():
+            history.open("rb").close()
+        history.parent.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=history.parent).close()
+
+
+@contextmanager
+def _alone(out: Path) -> Iterator[None]:
+    """Raise `InputError` if another nightly run is at work in a folder.
+
+    The lock is one of SQLite, which every system releases when the process ends, however it ends.
+    """
+    file = out / "nightly.lock"
+    with as_input_errors(OSError):
+        out.mkdir(parents=True, exist_ok=True)
+    with closing(sqlite3.connect(file, timeout=0, isolation_level=None)) as lock:
+        try:
+            lock.execute(f"PRAGMA user_version = {os.getpid()}")
+            lock.execute("BEGIN IMMEDIATE")
+        except sqlite3.OperationalError as error:
+            with suppress(sqlite3.Error):
+                (process,) = lock.execute("PRAGMA user_version").fetchone()
+                raise InputError(f"{file}: process {process} is a nightly run there") from None
+            raise InputError(f"{file}: {error}") from None
+        except sqlite3.DatabaseError as error:
+            raise InputError(f"{file}: {error}") from None
+        yield
+
+
+def _run(steps: list[_Step], folder: Path, history: Path, minutes: float, memory: int) -> int:
+    """Perform the steps of a run and report; return the exit status."""
+    from reports.nightly.history import last_times, read_history
+    from reports.nightly.step_status import has_ended, not_run
+
+    with as_input_errors(OSError):
+        folder.mkdir(exist_ok=True)
+    times = last_times(one for one in read_history(history) if one.get("date") != folder.name)
     made: dict[str, Any] = {}
     went: dict[str, dict[str, Any]] = dict(_record(folder, "steps") or {})
     try:
-        for step, how, seconds in _performed(steps, folder, minutes, memory * 1_000_000):
+        for step, how, seconds in _performed(steps, folder, minutes, memory, times):
             before = went.pop(step.name, None)
-            if seconds or not isinstance(before, dict) or "failed" in how:
+            if seconds or not isinstance(before, dict) or not has_ended(how):
                 page = step.page if (folder / step.page).is_file() else ""
                 before = {"status": how, "seconds": round(seconds, 1), "page": page}
             went[step.name] = before
@@ -107,7 +154,7 @@ def nightly(
     except Exception as error:
         _write_breakdown(f"failed: {type(error).__name__}: {error}", went, folder)
         raise
-    return FINDINGS if failed else FINE
+    return FINDINGS if failed or not_run(went) else FINE
 
 
 def _reported(
@@ -118,6 +165,7 @@ def _reported(
     from reports.nightly.history import (
         append_run,
         changes,
+        damage,
         known_before,
         nightly_record,
         read_history,
@@ -135,7 +183,9 @@ def _reported(
     run = {**nightly_record(name, made, went), "failures": failed}
     compared = "" if last is None else str(last["of"].get("conform", ""))
     before = _record(out / compared, "conform") if compared else None
-    reported = changes(last, run, before, made.get("conform"))
+    reported = damage(history, last)
+    if last is not None or not reported:
+        reported += changes(last, run, before, made.get("conform"))
     append_run(history, run)
     write_json({**run, "changes": reported}, folder / "nightly.json")
     write_claims_page(made, folder / "claims")
@@ -213,14 +263,21 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
 
 
 def _performed(
-    steps: list[_Step], folder: Path, minutes: float, memory: int
+    steps: list[_Step],
+    folder: Path,
+    minutes: float,
+    memory: int,
+    times: Mapping[str, tuple[float, str]],
 ) -> Iterator[tuple[_Step, str, float]]:
-    """Yield each step with its status: ok, findings, failed with its last line, or cut off.
+    """Yield each step with its status (`reports.nightly.step_status`) and the seconds it took.
 
     A step that is done already takes no time. One that failed is tried once more, and is flaky if
-    it succeeds then. Failed cases are repeated in a step of their own.
+    it succeeds then. Failed cases are repeated in a step of their own. ``times`` are those of the
+    steps in earlier runs (`reports.nightly.history.last_times`): a step that would not end in the
+    time that is left is not begun.
     """
     from reports.nightly.nightly_failures import AGAIN, failed_cases
+    from reports.nightly.step_status import CUT_OFF, FAILED, FLAKY, NOT_RUN
 
     begun = time.monotonic()
     left_to_do = deque(enumerate(steps, 1))
@@ -228,19 +285,27 @@ def _performed(
         number, step = left_to_do.popleft()
         began = time.monotonic()
         target = folder / f"{step.name}.json"
-        if target.is_file():
-            is_whole = _record(folder, step.name) is not None
-            yield step, "ok" if is_whole else f"failed: {target.name} there is damaged", 0.0
+        share = max(60 * minutes * step.share, 1)
+        left = 60 * minutes - (began - begun)
+        took, when = times.get(step.name, (share / 10, ""))
+        record = _record(folder, step.name)
+        if target.is_file() and not (record or {}).get("not_run"):
+            damaged = f"{FAILED}{target.name} there is damaged"
+            yield step, damaged if record is None else "ok", 0.0
+        elif left < min(took, share):
+            before = f"; it took {took / 60:.1f} minutes on {when}" if when else ""
+            yield step, f"{NOT_RUN}: no time left{before}", 0.0
         else:
-            left = 60 * minutes - (began - begun)
-            most = max(min(60 * minutes * step.share, left), 1)
+            most = min(share, left)
             words = f"{step.name} (at most {most / 60:.3g} min, {number} of {len(steps)})"
             _say(began - begun, words)
             _recall(folder, step.name)
             how = _attempt(step, target, most, memory)
-            if how.startswith("failed"):
+            if how.startswith(FAILED):
                 second = _attempt(step, target, most, memory)
-                how = how if second.startswith("failed") else f"flaky: {how}; then {second}"
+                how = how if second.startswith(FAILED) else f"{FLAKY}{how}; then {second}"
+            if how.startswith(CUT_OFF) and left < share:
+                how = f"{NOT_RUN} to its end: no time left, {how}"
             ended = time.monotonic()
             _say(ended - begun, f"{step.name}: {how}, {(ended - began) / 60:.1f} min")
             yield step, how, ended - began
@@ -251,13 +316,28 @@ def _performed(
 
 def _attempt(step: _Step, target: Path, most: float, memory: int) -> str:
     """Perform a step, which writes its record to ``target``; return its status in one line."""
+    from reports.nightly.step_status import CUT_OFF, FAILED
+
     command = [sys.executable, "-m", "krl", *step.arguments, "--json", str(target)]
     returned, last = _watched(command, most, memory)
     if returned is None:
-        return f"cut off after {most / 60:.3g} minutes"
+        return one_line(f"{CUT_OFF}after {most / 60:.3g} minutes{_how_far(target)}")
     if returned in (FINE, FINDINGS) and target.is_file():
         return "ok" if returned == FINE else "findings"
-    return one_line(f"failed: {last or f'status {returned}'}")
+    if returned < 0:
+        return f"{FAILED}killed by signal {-returned}"
+    return one_line(f"{FAILED}{last or f'status {returned}'}")
+
+
+def _how_far(target: Path) -> str:
+    """Return which cases were done and running when a step was cut off, if its record has that."""
+    record = _record(target.parent, target.stem) or {}
+    running = ", ".join(map(str, record.get("running") or ()))
+    left = len(record.get("not_run") or ())
+    if not left:
+        return ""
+    while_ = f", while {running} ran" if running else ""
+    return f"{while_}; {left:,} of {record.get('cases_total', 0) + left:,} cases are not done"
 
 
 def _say(seconds: float, words: str) -> None:
@@ -292,7 +372,7 @@ def _watched(command: list[str], seconds: float, memory: int) -> tuple[int | Non
             sys.stderr.write(text)
             sys.stderr.flush()
 
-    environment = {**os.environ, **(terminal if is_seen else {})}
+    environment = {**os.environ, **(terminal if is_seen else {"KRL_PROGRESS": "0"})}
     returned = run_limited(command, seconds, memory, hear, environment)
     lines = [line.strip() for line in re.split(r"[\r\n]", _CONTROL.sub("", said))]
     return returned, next((line for line in reversed(lines) if line), "")

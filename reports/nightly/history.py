@@ -1,18 +1,21 @@
 """The history of nightly runs, and the changes from one to the next.
 
-``history.jsonl`` has a line for each run. Unreadable lines are skipped, so that a run that was cut
-off does not hide earlier ones.
+``history.jsonl`` has a line for each run. Damaged lines are skipped and told, so that a run that
+was cut off does not hide earlier ones.
 """
 
 import hashlib
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-from reports.rendering.record_fields import Record, count, nested, number, records, text
+from reports.nightly.step_status import has_ended
+from reports.rendering.number_format import counted
+from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
 from support.files.atomic_write import write_atomic
 
 Json = dict[str, Any]
@@ -28,9 +31,12 @@ _TIMED = frozenset(
     "out anout in trigger motion_start motion_end blend_apex interrupt_enter message".split()
 )
 _MOST_LISTED = 40
+_MOST_NAMED = 3
 #: Runs are kept for a year; single cases and clusters only of the last `_IN_FULL` runs.
 _MOST_RUNS = 366
 _IN_FULL = 7
+#: The parts of a run, each a record.
+_PARTS: Final = ("steps", "recover", "growth", "conform", "conform-arm", "fuzz", "bench")
 _LONG = {"recover": "clusters", "conform": "cases", "conform-arm": "cases"}
 #: Figures of benches that are no results, such as the amount of work and parameters.
 _SIZES = frozenset(
@@ -41,11 +47,35 @@ _SIZES = frozenset(
 
 def read_history(file: Path) -> list[Json]:
     """Return the nightly runs of a history, the oldest first; empty if there is no file."""
+    return [run for line in _lines(file) if (run := _run(line)) is not None]
+
+
+def damage(file: Path, compared: Record | None) -> list[str]:
+    """Return a sentence on the damaged lines of a history; empty if there are none.
+
+    ``compared`` is what `known_before` returned for the other lines.
+    """
+    lines = [number for number, line in enumerate(_lines(file), 1) if line and _run(line) is None]
+    if not lines:
+        return []
+    named = ", ".join(map(str, lines[:_MOST_NAMED]))
+    more = f" and {len(lines) - _MOST_NAMED:,} more" if len(lines) > _MOST_NAMED else ""
+    are = "line {} is damaged and was" if len(lines) == 1 else "lines {} are damaged and were"
+    rest = (
+        "no earlier run is left to compare with"
+        if compared is None
+        else f"compared with the run of {text(compared, 'date')}"
+    )
+    return [f"history {file}: {are.format(named + more)} skipped; {rest}"]
+
+
+def _lines(file: Path) -> list[str]:
+    """Return the lines of a history; strings in them may contain other separators of lines."""
     try:
-        lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+        content = file.read_text(encoding="utf-8", errors="replace")
     except FileNotFoundError:
         return []
-    return [run for line in lines if (run := _run(line)) is not None]
+    return [line.strip() for line in content.split("\n")]
 
 
 def append_run(file: Path, run: Mapping[str, Any]) -> None:
@@ -54,8 +84,7 @@ def append_run(file: Path, run: Mapping[str, Any]) -> None:
     It replaces an earlier run of the same date, which was interrupted or repeated. Only the figures
     of older runs are kept, for a year. Raises OSError.
     """
-    before = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
-    kept = [line for line in before.splitlines() if line.strip() and not _is_of(line, run)]
+    kept = [line for line in _lines(file) if line and not _is_of(line, run)]
     kept = [*_shortened(kept[1 - _MOST_RUNS :]), _line(run)]
     write_atomic(file, "\n".join(kept) + "\n")
 
@@ -83,8 +112,8 @@ def _line(run: Mapping[str, Any]) -> str:
 def known_before(runs: Sequence[Json]) -> Json | None:
     """Return the latest known results of all runs together; ``None`` if there are no runs.
 
-    A run of only some steps does not hide earlier results of the other steps. ``of`` maps each part
-    to the date of its run.
+    A run of only some steps does not hide earlier results of the other steps, nor does one that was
+    cut off hide those of the cases it did not run. ``of`` maps each part to the date of its run.
     """
     if not runs:
         return None
@@ -94,17 +123,34 @@ def known_before(runs: Sequence[Json]) -> Json | None:
         parts = {name: part for name, part in run.items() if isinstance(part, dict) and part}
         bench = {**known["bench"], **parts.pop("bench", {})}
         of = {**known["of"], **dict.fromkeys(parts, date)}
+        for name in ("conform", "conform-arm"):
+            if left := texts(parts.get(name, {}), "not_run"):
+                cases = nested(known.get(name, {}), "cases")
+                kept = {case: cases[case] for case in left if case in cases}
+                parts[name] = {**parts[name], "cases": {**kept, **nested(parts[name], "cases")}}
         known = {**known, **parts, "date": date, "bench": bench, "of": of}
     return known
 
 
+def last_times(runs: Iterable[Record]) -> dict[str, tuple[float, str]]:
+    """Return the seconds that each step took when it ended last, and the date of that run."""
+    return {
+        name: (number(step, "seconds"), text(run, "date"))
+        for run in runs
+        for name, step in nested(run, "steps").items()
+        if isinstance(step, dict) and has_ended(text(step, "status")) and number(step, "seconds")
+    }
+
+
 def _run(line: str) -> Json | None:
-    """Return the run of a line; ``None`` if it is damaged or has numbers that are not finite."""
+    """Return the run of a line; ``None`` if it is damaged: not one, or with infinite numbers."""
     try:
         run = json.loads(line, parse_float=_finite, parse_constant=_finite)
     except (ValueError, RecursionError):
         return None
-    return run if isinstance(run, dict) else None
+    if not isinstance(run, dict) or not isinstance(run.get("date"), str):
+        return None
+    return run if all(isinstance(run.get(part, {}), dict) for part in _PARTS) else None
 
 
 def _finite(written: str) -> float:
@@ -168,7 +214,9 @@ def _grown(record: Record) -> Json:
 
 def _conformed(record: Record) -> Json:
     coverage = nested(record, "coverage")
+    left = texts(record, "not_run")
     return {
+        **({"not_run": left} if left else {}),
         "verdicts": dict(nested(record, "verdicts")),
         "seconds": number(record, "seconds"),
         "hard": count(coverage, "hard"),
@@ -215,11 +263,20 @@ def _figures(record: Record) -> Iterator[tuple[str, float]]:
 
 # ----------------------------------------------------------------------------------- what changed
 
+#: What is put before a change of the cases that ran on MuJoCo.
+ON_MUJOCO: Final = "on MuJoCo: "
+#: The starts of changes for the worse, and for the better.
+_BAD = (
+    *("history ", "step ", "suite vanished", "cases vanished", "case vanished", "new failure"),
+    *("no longer passes", "survey: new cluster", "fuzz:", "worse"),
+)
+_GOOD = ("fixed", "survey: gone cluster")
+
 
 def changes(
     before: Record | None, now: Record, old: Record | None = None, new: Record | None = None
 ) -> list[str]:
-    """Return the changes since the previous nightly run, one sentence each.
+    """Return the changes since the previous nightly run, one sentence each, the worst first.
 
     ``old`` and ``new`` are the conformance records of both runs if available; they have the times
     of events. Parts that one of the runs has no record of are not compared.
@@ -233,22 +290,26 @@ def changes(
         reported += _verdicts(nested(before, "conform"), nested(now, "conform"))
         reported += _shifts(nested(before, "conform"), nested(now, "conform"), old, new)
     if before.get("conform-arm") and now.get("conform-arm"):
-        reported += _verdicts(
-            nested(before, "conform-arm"), nested(now, "conform-arm"), "on MuJoCo: "
-        )
+        told = _verdicts(nested(before, "conform-arm"), nested(now, "conform-arm"))
+        reported += (f"{ON_MUJOCO}{one}" for one in told)
     if before.get("fuzz") and now.get("fuzz"):
         reported += _fuzz(nested(before, "fuzz"), nested(now, "fuzz"))
     figures = worse_figures(nested(before, "bench"), nested(now, "bench"))
-    return [*reported, *(f"worse: {figure}" for figure in figures)]
+    reported += (f"worse: {figure}" for figure in figures)
+    return sorted(reported, key=lambda one: ("bad", "", "good").index(tone(one)))
+
+
+def tone(change: str) -> str:
+    """Return "bad" for a change for the worse, "good" for one for the better, else ""."""
+    told = change.removeprefix(ON_MUJOCO)
+    return "bad" if told.startswith(_BAD) else "good" if told.startswith(_GOOD) else ""
 
 
 def _steps(before: Record, now: Record) -> Iterator[str]:
     for name, step in nested(now, "steps").items():
         status = text(step, "status")
         was = text(nested(nested(before, "steps"), name), "status")
-        if status != was and (
-            status not in ("ok", "findings") or was not in ("", "ok", "findings")
-        ):
+        if status != was and not (has_ended(status) and (not was or has_ended(was))):
             yield f"step {name}: {status}" + (f" (was: {was})" if was else "")
 
 
@@ -265,18 +326,34 @@ def _survey(before: Record, now: Record) -> Iterator[str]:
     )
 
 
-def _verdicts(before: Record, now: Record, where: str = "") -> Iterator[str]:
-    """Yield the cases whose verdict has changed; ``where`` is put before each sentence."""
+def _verdicts(before: Record, now: Record) -> Iterator[str]:
+    """Yield the cases that vanished, that changed their verdict, and that appeared."""
     old, new = _by_case(before), _by_case(now)
+    yield from (told for told, _ in vanished(old, {*new, *texts(now, "not_run")}))
     for name, (verdict, _) in new.items():
         if name not in old:
-            yield f"{where}case appeared: {name} ({verdict})"
-        elif old[name][0] != verdict:
-            what = (
-                "new failure" if verdict == "fail" else "fixed" if verdict == "pass" else "changed"
-            )
-            yield f"{where}{what}: {name}: {old[name][0]} → {verdict}"
-    yield from (f"{where}case vanished: {name}" for name in old if name not in new)
+            yield f"case appeared: {name} ({verdict})"
+        elif (was := old[name][0]) != verdict:
+            what = {"fail": "new failure", "pass": "fixed"}.get(verdict)
+            what = what or ("no longer passes" if was == "pass" else "changed")
+            yield f"{what}: {name}: {was} → {verdict}"
+
+
+def vanished(old: Iterable[str], there: Collection[str]) -> Iterator[tuple[str, list[str]]]:
+    """Yield a sentence, with the names, for the cases of each suite that are no longer there.
+
+    ``old`` are the names of the cases before.
+    """
+    for suite, of_suite in groupby(sorted(old), lambda name: name.partition("/")[0]):
+        names = [*of_suite]
+        gone = [name for name in names if name not in there]
+        if len(gone) == len(names) > 1:
+            yield f"suite vanished: {suite}, {len(gone):,} cases", gone
+        elif len(gone) > _MOST_NAMED:
+            more = counted(len(gone) - _MOST_NAMED, "more case")
+            yield f"cases vanished: {', '.join(gone[:_MOST_NAMED])} and {more} of {suite}", gone
+        elif gone:
+            yield f"{'case' if len(gone) == 1 else 'cases'} vanished: {', '.join(gone)}", gone
 
 
 def _by_case(conform: Record) -> dict[str, tuple[str, str]]:

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from reports.nightly.nightly_failures import OF_THE_RUN
+from reports.nightly.history import tone
+from reports.nightly.nightly_failures import OF_THE_RUN, headline
+from reports.nightly.step_status import has_ended
 from reports.rendering.embedding import embedded_json
 from reports.rendering.number_format import Figure, counted, percent, share
 from reports.rendering.page import render, source
@@ -16,14 +18,11 @@ from support.files.atomic_write import write_atomic
 
 _MAX_RUNS = 400
 _MAX_CHANGES = 300
-_BAD = ("new failure", "case vanished", "worse", "step ", "survey: new cluster", "fuzz:")
-_FINE = ("ok", "findings")
 _DATE = re.compile(r"\d{4}-\d\d-\d\d")
 #: The number of earlier runs that are linked.
 MOST_EARLIER = 30
 #: The starts of links to failed cases.
 _PAGES = ("conform/index.html#", "conform-arm/index.html#")
-_GOOD = ("fixed", "survey: gone cluster")
 #: Labels of the figures of benches; others are shown by their names.
 _IN_WORDS = {
     "recover.bytes_per_s": "survey, bytes a second",
@@ -85,6 +84,7 @@ class _Failure:
     page: str
     command: str
     files: tuple[tuple[str, str], ...]
+    cases: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +96,7 @@ class _NightlyView:
     """
 
     date: str
+    headline: str
     failures: tuple[_Failure, ...]
     figures: tuple[Figure, ...]
     changes: tuple[tuple[str, str], ...]
@@ -148,9 +149,10 @@ def _view(record: Mapping[str, Any], runs: Sequence[Record], out: Path) -> _Nigh
     before = nested(runs[-2], "bench") if len(runs) > 1 else {}
     return _NightlyView(
         date=shown(text(record, "date"), 40),
+        headline=shown(headline(record)),
         failures=tuple(map(_failure, records(record, "failures")[:_MAX_CHANGES])),
         figures=tuple(_figures(record)),
-        changes=tuple((_tone(one), shown(one)) for one in texts(record, "changes")[:_MAX_CHANGES]),
+        changes=tuple((tone(one), shown(one)) for one in texts(record, "changes")[:_MAX_CHANGES]),
         steps=tuple(_step(name, step) for name, step in nested(record, "steps").items()),
         bench=tuple(
             (
@@ -182,8 +184,9 @@ def _figures(record: Mapping[str, Any]) -> Iterator[Figure]:
         yield Figure("files parse", percent(parsed, files), f"{parsed:,} of {files:,}")
     if conform:
         verdicts = nested(conform, "verdicts")
-        note = f"{count(verdicts, 'fail'):,} fail, {count(verdicts, 'skipped'):,} skipped"
-        yield Figure("runs of cases pass", f"{count(verdicts, 'pass'):,}", note)
+        others = [name for name in verdicts if name != "pass" and count(verdicts, name)]
+        note = ", ".join(f"{count(verdicts, name):,} {shown(name, 20)}" for name in others)
+        yield Figure("runs of cases pass", f"{count(verdicts, 'pass'):,}", note or "all of them")
         hard, covered = count(conform, "hard"), count(conform, "hard_covered")
         note = f"{covered:,} of {hard:,} that may fail"
         yield Figure("rules covered", percent(covered, hard), note)
@@ -196,19 +199,26 @@ def _figures(record: Mapping[str, Any]) -> Iterator[Figure]:
 
 
 def _failure(record: Record) -> _Failure:
-    page = text(record, "page")
-    is_ours = page.startswith(_PAGES)
     return _Failure(
         text(record, "what").startswith(OF_THE_RUN),
         shown(text(record, "what")),
-        page if is_ours else "",
+        _own(text(record, "page")),
         shown(text(record, "command"), 200),
         tuple(
             (shown(name, 80), "\n".join(shown(line, 200) for line in content.splitlines()[:200]))
             for name, content in nested(record, "files").items()
             if isinstance(content, str)
         ),
+        tuple(
+            (shown(name, 80), _own(str(page)))
+            for name, page in [*nested(record, "cases").items()][:_MAX_CHANGES]
+        ),
     )
+
+
+def _own(page: str) -> str:
+    """Return a link if it leads to one of our pages, else ""."""
+    return page if page.startswith(_PAGES) else ""
 
 
 def _in_words(name: str) -> str:
@@ -228,10 +238,6 @@ def _change(value: float, before: Any) -> str:
     return f"{100 * (value - before) / abs(before):+.1f} %"
 
 
-def _tone(change: str) -> str:
-    return "bad" if change.startswith(_BAD) else "good" if change.startswith(_GOOD) else ""
-
-
 def _step(name: str, step: Any) -> _Step:
     fields: Record = step if isinstance(step, Mapping) else {}
     status, page = text(fields, "status"), text(fields, "page")
@@ -240,7 +246,7 @@ def _step(name: str, step: Any) -> _Step:
     return _Step(
         shown(name, 60),
         shown(status, 300),
-        status in _FINE,
+        has_ended(status),
         number(fields, "seconds"),
         page if is_ours and not page.startswith("/") else "",
     )

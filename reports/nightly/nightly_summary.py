@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from reports.rendering.number_format import counted
+from reports.nightly.nightly_failures import headline
 from reports.rendering.record_fields import nested, number, records, text, texts
 from reports.rendering.sanitizing import shown
 
@@ -21,7 +21,8 @@ def nightly_summary(record: Mapping[str, Any]) -> str:
 
 def _lines(record: Mapping[str, Any]) -> Iterator[str]:
     failures, changes = records(record, "failures"), texts(record, "changes")
-    verdict = counted(len(failures), "failure") if failures else "nothing failed"
+    told = headline(record)
+    verdict = _code(told) if told else "nothing failed"
     yield f"## Nightly run of {_code(text(record, 'date'))}: {verdict}\n"
     for one in failures[:_MOST]:
         command = text(one, "command")

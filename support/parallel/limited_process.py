@@ -11,6 +11,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from threading import Thread, current_thread, main_thread
 
+_GRACE = 30.0
+#: A shell kills its process group as soon as nobody holds the other end of standard input.
+_WATCHED = "exec 3<&0 </dev/null; (read _ <&3; kill -9 0) & "
+
 
 def run_limited(
     command: Sequence[str],
@@ -21,18 +25,21 @@ def run_limited(
 ) -> int | None:
     """Return the exit status of a command, or ``None`` if it took longer than ``seconds``.
 
-    ``memory`` limits the address space of each of its processes in bytes; only Linux enforces it.
-    ``hear`` is called from a thread with everything the command writes to standard error, piece by
-    piece, before this function returns. All processes of the command are killed at the end, also if
-    this process receives SIGTERM. A command that cannot be started raises OSError; on Linux it has
-    the status 127 instead.
+    It is then asked to end (SIGTERM), and has half a minute to write what it has. ``memory`` limits
+    the address space of each of its processes in bytes; only Linux enforces it. ``hear`` is called
+    from a thread with everything the command writes to standard error, piece by piece, before this
+    function returns. All processes of the command are killed at the end, also if this process
+    receives SIGTERM, and, except on Windows, if this process is killed. A command that cannot be
+    started has the status 127; on Windows it raises OSError.
     """
-    if sys.platform == "linux":  # by a shell: set from here, the limit could come too late
-        limited = f'ulimit -v {memory // 1024} && exec "$@"'
-        command = ["/bin/sh", "-c", limited, "sh", *command]
+    if sys.platform != "win32":
+        # by a shell: set from here, the limit could come too late
+        limit = f"ulimit -v {memory // 1024} && " if sys.platform == "linux" else ""
+        command = ["/bin/sh", "-c", f'{_WATCHED}{limit}exec "$@" 3<&-', "sh", *command]
     with _ended_by_termination() as started:
         process = subprocess.Popen(
             command,
+            stdin=subprocess.PIPE,  # open as long as this process lives
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
             env=environment,
@@ -44,11 +51,16 @@ def run_limited(
             started(process)
             return process.wait(seconds)
         except subprocess.TimeoutExpired:
+            process.terminate()
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(_GRACE)
             return None
         finally:
             _kill(process)
             process.wait()
             reader.join()
+            assert process.stdin is not None, "it is a pipe"
+            process.stdin.close()
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:

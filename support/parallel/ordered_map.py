@@ -84,7 +84,11 @@ def _workers(jobs: int, scheduler: str | None) -> Iterator[Workers]:
             yield cluster
     else:
         with closing(LocalWorkers(jobs)) as local:
-            yield local
+            try:
+                yield local
+            except BaseException:
+                local.kill()
+                raise
 
 
 def _result_or_retry(

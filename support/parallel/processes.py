@@ -114,6 +114,12 @@ class LocalWorkers:
         """Start new processes, because a pool in which one died accepts no more tasks."""
         self._pool = process_pool(self._count)
 
+    def kill(self) -> None:
+        """Kill the processes, as nobody waits for their results any more."""
+        for process in multiprocessing.active_children():
+            if isinstance(process, _Process):
+                process.kill()
+
     def close(self) -> None:
         """End the processes; tasks that have not begun are cancelled."""
         self._pool.shutdown(wait=True, cancel_futures=True)

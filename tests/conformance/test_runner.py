@@ -1,18 +1,21 @@
 """The runner: verdicts, comparison of executors, known failures, parallel and deterministic."""
 
 import os
+import signal
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 import pytest
 
+from conformance import runner
 from conformance.evaluation.execution import Setup, missing, observe
 from conformance.evaluation.observation import Event, Observation
 from conformance.evaluation.trace_comparison import first_divergence
 from conformance.evaluation.verdicts import Known, KnownFailures
-from conformance.runner import repeated, run_case, run_cases
+from conformance.runner import Stopped, repeated, run_case, run_cases
 from conformance.suite.case import Case, read_case
 
 TREE, VM = Setup("tree", "none"), Setup("vm", "none")
@@ -156,14 +159,87 @@ def test_executor_that_never_ends_is_a_failed_case_with_its_name(make: MakeCase)
 
     case = make(("CTL-01", "CTL-02"))
     (result,) = run_case(case, [TREE], NOTHING_KNOWN, see, most=0.05).results
-    reason = "line 0: no crash; seen: control/fact takes more than 0.05 seconds of computing"
+    reason = "crash: it takes more than 0.05 seconds of computing"
     assert ("fail", reason) == (result.verdict, result.reason)
+
+
+def test_executor_that_waits_for_ever_is_a_failed_case(
+    make: MakeCase, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It needs no processor for that."""
+    monkeypatch.setattr(runner, "_LASTING", 0.05)
+
+    def see(case: Case, setup: Setup) -> Observation:
+        sleep(600)
+        return observe(case, setup)
+
+    (result,) = run_case(make(), [TREE], NOTHING_KNOWN, see).results
+    assert ("fail", "crash: it takes more than 0.05 seconds") == (result.verdict, result.reason)
+
+
+def test_case_that_does_not_end_is_tried_once(
+    make: MakeCase, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither on the executors after that, nor once more."""
+    monkeypatch.setattr(runner, "_COMPUTING", 0.05)
+    begun: list[str] = []
+
+    def see(_case: Case, setup: Setup) -> Observation:
+        begun.append(setup.executor)
+        while True:
+            pass
+
+    done = repeated(lambda: run_case(make(), [TREE, VM], NOTHING_KNOWN, see, most=0.05))
+    assert ["fail", "skipped"] == [one.verdict for one in done.results]
+    assert "it does not end on tree/none" == done.results[1].reason
+    assert ["tree"] == begun
+
+
+def test_executor_that_crashes_fails_alone(make: MakeCase) -> None:
+    """Its exception and the place are the reason, though the others have a trace to compare."""
+
+    def see(case: Case, setup: Setup) -> Observation:
+        return observe(case, setup) if setup in (VM, native) else _failing(case, setup)
+
+    native = Setup("native", "none")
+    results = run_case(make(), [TREE, VM, native], NOTHING_KNOWN, see).results
+    assert ["fail", "pass", "pass"] == [one.verdict for one in results]
+    place = f"test_runner.py:{_failing.__code__.co_firstlineno + 1}"
+    assert f"crash: ZeroDivisionError: in the executor ({place})" == results[0].reason
+    assert results[0].reason == run_case(make(), [VM, TREE], NOTHING_KNOWN, see).results[1].reason
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGUSR1"), reason="there are no such signals")
+def test_run_that_is_stopped_keeps_what_is_done(
+    make: MakeCase, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also by a signal; it says what was running."""
+
+    def stop(_signal: int, _frame: object) -> None:
+        raise Stopped
+
+    def see(case: Case, setup: Setup) -> Observation:
+        if case.name == "control/two":
+            os.kill(os.getpid(), signal.SIGUSR1)
+        return observe(case, setup)
+
+    monkeypatch.setattr(runner, "observe", see)
+    running: list[str] = []
+    cases = [make(name=name) for name in ("one", "two", "three")]
+    before = signal.signal(signal.SIGUSR1, stop)
+    try:
+        given = (NOTHING_KNOWN, 1, lambda _: None, None, running.extend)
+        done = run_cases(cases, ["tree"], ["none"], *given)
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+    assert ["control/one"] == [one.case.name for one in done]
+    assert ["control/two on tree/none"] == running
 
 
 def test_failed_case_that_passes_when_run_again_is_flaky(make: MakeCase) -> None:
     """It stays failed and its reason says so; one that fails again has its reason alone."""
     seen = [Observation(ending="crash", note="lost"), observe(make(), TREE)]
-    bad = "line 7: value N 2; seen: N was never assigned"
+    bad = "crash: lost"
 
     def reasons() -> list[str]:
         left = [*seen]

@@ -1,6 +1,8 @@
 """`krl conform` from the outside: selections, outputs, exit status."""
 
 import json
+import os
+import signal
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -8,7 +10,10 @@ from pathlib import Path
 import pytest
 
 import interp
+from conformance.evaluation.execution import Setup, observe
+from conformance.evaluation.observation import Observation
 from conformance.sensitivity.mutants import Mutant, of_line
+from conformance.suite.case import Case
 from krl.cli import main
 
 CASE = """\
@@ -62,6 +67,40 @@ def test_unconfirmed_case_leaves_status_0(tmp_path: Path) -> None:
     """What rests on recollection fails nobody."""
     path = write(tmp_path / "control", "open", 2, rule="CTL-02")
     assert 0 == run(path, "--executor", "tree", "--robot", "none")
+
+
+def test_unconfirmed_cases_count_if_told_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With --strict they are shown with what is expected and seen, and the status is 1."""
+    case = write(tmp_path, "three", 3, "CTL-02")
+    assert 0 == run(case, "--executor", "tree", "--robot", "none")
+    assert "seen" not in capsys.readouterr().out
+    assert 1 == run(case, "--executor", "tree", "--robot", "none", "--strict")
+    assert "tree/none: line 6: value N 3; seen: " in capsys.readouterr().out
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
+def test_a_run_that_is_terminated_records_what_it_has(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It names the case that ran, and those that are not done."""
+    cases = [write(tmp_path, name, 2) for name in ("one", "two", "three")]
+
+    def see(case: Case, setup: Setup) -> Observation:
+        if case.main.startswith("two"):
+            os.kill(os.getpid(), signal.SIGTERM)
+        return observe(case, setup)
+
+    monkeypatch.setattr("conformance.runner.observe", see)
+    file = tmp_path / "record.json"
+    options = ("--executor", "tree", "--robot", "none", "--jobs", 1, "--json", file)
+    assert 143 == run(*cases, *options)
+    record = json.loads(file.read_text(encoding="utf-8"))
+    names = [one["name"] for one in record["cases"]]
+    assert 3 == len([*names, *record["not_run"]])
+    assert [f"{record['not_run'][0]} on tree/none"] == record["running"]
+    assert f"terminated while running {record['running'][0]}" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,10 @@
 import io
 import json
 import re
+import subprocess
 import sys
+import tempfile
+import time
 from pathlib import Path
 
 import pytest
@@ -64,7 +67,21 @@ def test_a_damaged_history_hides_no_night(
     damaged = f'{old}\n{"[" * 90_000}\n{{"date": \n\x00\x1b[31m\n'
     (tmp_path / "h.jsonl").write_text(damaged, encoding="utf-8")
     status, out = run(tmp_path, capsys, "fuzz")
-    assert (0, "fixed: fuzz: divergences 3 → 0") == (status, out[-2])
+    told = "lines 2, 3, 4 are damaged and were skipped; compared with the run of 2026-01-01"
+    told = f"history {tmp_path / 'h.jsonl'}: {told}"
+    assert (0, [told, "fixed: fuzz: divergences 3 → 0"]) == (status, out[:-1])
+    for name in ("index.html", "summary.md"):
+        assert "2, 3, 4 are damaged" in (tmp_path / DATE / name).read_text(encoding="utf-8")
+
+
+def test_a_history_without_a_run_is_no_first_run(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """There was one, and nobody knows what has changed since."""
+    _step(monkeypatch, (0, ""))
+    (tmp_path / "h.jsonl").write_text('{"date": 7, "conform": []}\n', encoding="utf-8")
+    told = "line 1 is damaged and was skipped; no earlier run is left to compare with"
+    assert [f"history {tmp_path / 'h.jsonl'}: {told}"] == run(tmp_path, capsys, "recover")[1][:-1]
 
 
 def test_a_divergence_of_the_fuzzer_is_a_bad_night(
@@ -143,7 +160,7 @@ def _step(monkeypatch: pytest.MonkeyPatch, *outcomes: tuple[int | None, str]) ->
     [
         ([(0, "")], "ok"),
         ([(2, "no such thing"), (0, "")], "flaky: failed: no such thing; then ok"),
-        ([(-9, ""), (2, "worse")], "failed: status -9"),
+        ([(-9, "krl: running cases: 160 of 275"), (2, "")], "failed: killed by signal 9"),
         ([(None, "far")], "cut off after 18 minutes"),
     ],
 )
@@ -242,7 +259,99 @@ def test_a_history_that_cannot_be_kept_is_refused_at_once(
     (tmp_path / "h.jsonl").mkdir()
     asked = _step(monkeypatch, (0, ""))
     assert (2, []) == run(tmp_path, capsys, "recover")
+    (tmp_path / "h.jsonl").rmdir()
+
+    def full(**_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(tempfile, "TemporaryFile", full)
+    assert (2, []) == run(tmp_path, capsys, "recover")
     assert not asked
+
+
+def test_two_runs_do_not_write_into_one_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The second one is refused, with the process of the first; that one may end in any way."""
+    holds = (
+        "import sys; from pathlib import Path; from krl.commands import nightly\n"
+        f"with nightly._alone(Path({str(tmp_path)!r})): print('held', flush=True); input()"
+    )
+    asked = _step(monkeypatch, (0, ""))
+    command = [sys.executable, "-c", holds]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as first:
+        assert first.stdout is not None, "it is a pipe"
+        assert "held\n" == first.stdout.readline()
+        options = ["--out", str(tmp_path), "--history", str(tmp_path / "h.jsonl")]
+        assert 2 == main(["nightly", *options, "--only", "recover"])
+        told = f"{tmp_path / 'nightly.lock'}: process {first.pid} is a nightly run there"
+        assert told in capsys.readouterr().err
+        assert not asked
+        first.kill()
+    assert 0 == run(tmp_path, capsys, "recover")[0]
+
+
+def test_what_is_no_lock_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A file of that name may be somebody's."""
+    (tmp_path / "nightly.lock").write_bytes(b"mine" * 1000)
+    assert (2, []) == run(tmp_path, capsys, "fuzz")
+
+
+def test_a_step_without_time_is_not_run(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is told with what it took before, is no failure, and the run is not good."""
+    steps = {"growth": {"status": "ok", "seconds": 600.0}}
+    (tmp_path / "h.jsonl").write_text(json.dumps({"date": "1", "steps": steps}), encoding="utf-8")
+    asked = _step(monkeypatch, (0, ""))
+    late = iter([0.0, *[3500.0] * 100])
+    monkeypatch.setattr(time, "monotonic", lambda: next(late))
+    status, out = run(tmp_path, capsys, "recover", "growth", "bench-vm")
+    assert (1, []) == (status, [line for line in out if line.startswith("failed")])
+    assert {
+        "recover": "not run: no time left",
+        "growth": "not run: no time left; it took 10.0 minutes on 1",
+        "bench-vm": "ok",
+    } == steps_of(tmp_path)
+    assert 1 == len(asked)
+    summary = (tmp_path / DATE / "summary.md").read_text(encoding="utf-8")
+    assert "incomplete: 2 steps not run" in summary
+
+
+def test_a_step_that_got_less_than_its_share_did_not_fail(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was cut off because no time was left."""
+    _step(monkeypatch, (None, ""))
+    late = iter([0.0, *[3300.0] * 100])
+    monkeypatch.setattr(time, "monotonic", lambda: next(late))
+    assert 1 == run(tmp_path, capsys, "growth")[0]
+    told = "not run to its end: no time left, cut off after 5 minutes"
+    assert {"growth": told} == steps_of(tmp_path)
+
+
+def test_what_was_cut_off_is_told_and_done_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The cases that were done are kept, those that ran are named; the rest is run again."""
+    case = {"name": "io/one", "verdict": "fail", "results": [{**_ON, "verdict": "fail"}]}
+    part = {"cases_total": 1, "cases": [case]}
+    part |= {"not_run": ["io/two", "io/x"], "running": ["io/two on vm/none"]}
+    asked = list[list[str]]()
+
+    def watched(command: list[str], _seconds: float, _memory: int) -> tuple[int | None, str]:
+        asked.append(command)
+        Path(command[-1]).write_text(json.dumps(part), encoding="utf-8")
+        return None, ""
+
+    monkeypatch.setattr(nightly, "_watched", watched)
+    for _ in range(2):
+        status, out = run(tmp_path, capsys, "conform")
+        told = "while io/two on vm/none ran; 2 of 3 cases are not done"
+        assert (1, f"failed: step conform: cut off after 15 minutes, {told}") == (status, out[0])
+        assert "failed: case io/one failed on vm/none: why" in out
+    assert 2 == len([one for one in asked if "--html" in one])
 
 
 def test_a_run_that_broke_off_is_the_first_failure_of_the_next(

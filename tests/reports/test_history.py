@@ -4,7 +4,17 @@ import json
 from pathlib import Path
 from typing import Any
 
-from reports.nightly.history import append_run, changes, known_before, nightly_record, read_history
+import pytest
+
+from reports.nightly.history import (
+    append_run,
+    changes,
+    damage,
+    known_before,
+    last_times,
+    nightly_record,
+    read_history,
+)
 from reports.nightly.nightly_failures import failures
 from reports.nightly.nightly_page import write_nightly_page
 
@@ -29,11 +39,34 @@ def test_failures_fixes_and_vanished_cases_are_reported() -> None:
     new = _conform(_case("a/x", "fail"), _case("a/y", "pass"), _case("a/w", "pass"))
     told = changes(_run("1", old), _run("2", new), old, new)
     assert [
-        "new failure: a/x: pass → fail",
-        "fixed: a/y: fail → pass",
-        "case appeared: a/w (pass)",
         "case vanished: a/z",
+        "new failure: a/x: pass → fail",
+        "case appeared: a/w (pass)",
+        "fixed: a/y: fail → pass",
     ] == told
+
+
+def test_a_suite_that_vanished_is_one_sentence() -> None:
+    """It comes before what is better; of other suites the cases are named."""
+    names = ["io/a", "io/b", *(f"data/{n}" for n in range(6))]
+    old = _conform(*(_case(name, "fail") for name in names))
+    new = _conform(_case("data/0", "pass"))
+    assert [
+        "cases vanished: data/1, data/2, data/3 and 2 more cases of data",
+        "suite vanished: io, 2 cases",
+        "fixed: data/0: fail → pass",
+    ] == changes(_run("1", old), _run("2", new))
+
+
+def test_a_case_that_was_cut_off_has_not_vanished() -> None:
+    """What it did before is what the next nightly run is compared with."""
+    whole = _run("1", _conform(_case("a/x", "pass"), _case("a/y", "pass")))
+    part = _run("2", {**_conform(_case("a/x", "pass")), "not_run": ["a/y"]})
+    assert [] == changes(whole, part)
+    known = known_before([whole, part])
+    assert ["new failure: a/y: pass → fail"] == changes(
+        known, _run("3", _conform(_case("a/x", "pass"), _case("a/y", "fail")))
+    )
 
 
 def test_the_same_night_again_changes_nothing() -> None:
@@ -109,6 +142,46 @@ def test_damaged_lines_hide_no_night(tmp_path: Path) -> None:
     append_run(file, {"date": "3", "try": 2})
     assert [{"date": "1"}, {"date": "3", "try": 2}] == read_history(file)
     assert '{"date": "2", "con' in file.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "\ufffdPK\x03",
+        '{"date": 7, "conform": {}}',
+        '{"date": "2", "conform": []}',
+        '{"date": "2", "co',
+    ],
+)
+def test_damaged_lines_are_told(tmp_path: Path, line: str) -> None:
+    """With file and line, and which run is compared instead, if any is left."""
+    file = tmp_path / "history.jsonl"
+    file.write_text(f'{{"date": "1"}}\n\n{line}\n', encoding="utf-8")
+    told = f"history {file}: line 3 is damaged and was skipped; compared with the run of 1"
+    assert [told] == damage(file, known_before(read_history(file)))
+    file.write_text(f"{line}\n" * 5, encoding="utf-8")
+    told = (
+        "lines 1, 2, 3 and 2 more are damaged and were skipped; no earlier run is left to compare"
+    )
+    assert [f"history {file}: {told} with"] == damage(file, known_before(read_history(file)))
+
+
+def test_no_character_of_a_title_ends_a_line(tmp_path: Path) -> None:
+    """Only line feeds do."""
+    file = tmp_path / "history.jsonl"
+    run = {"date": "1", "recover": {"clusters": {"1": "a\u2028b\x85c"}}}
+    append_run(file, run)
+    assert ([run], []) == (read_history(file), damage(file, None))
+
+
+def test_the_time_of_a_step_is_that_of_its_last_end() -> None:
+    """A step that was cut off, or done already, says nothing about it."""
+    steps = [("ok", 5.0), ("findings", 7.0), ("ok", 0.0), ("cut off after 1 minutes", 60.0)]
+    runs = [
+        {"date": str(n), "steps": {"fuzz": {"status": status, "seconds": seconds}}}
+        for n, (status, seconds) in enumerate(steps)
+    ]
+    assert {"fuzz": (7.0, "1")} == last_times(runs)
 
 
 def test_a_night_with_numbers_that_are_none_is_damaged(tmp_path: Path) -> None:

@@ -6,8 +6,9 @@ from typing import Any
 import pytest
 
 from reports.nightly.history import changes, nightly_record
-from reports.nightly.nightly_failures import failures
+from reports.nightly.nightly_failures import failures, headline
 from reports.nightly.nightly_page import write_nightly_page
+from reports.nightly.nightly_summary import nightly_summary
 
 
 def _conform(verdict: str, reason: str = "line 7: out 1 TRUE; seen: nothing") -> dict[str, Any]:
@@ -100,11 +101,64 @@ def test_a_case_that_no_longer_passes_is_a_failure(step: str) -> None:
     """Even if its rule is not sure enough to fail it by itself; the history has what passed."""
     before = nightly_record("2026-01-01", {step: _conform("pass")}, {})
     (found,) = failures({step: _conform("unconfirmed")}, {}, before)
-    assert "case io/pulse passed before, now unconfirmed" == found["what"]
+    reason = "line 7: out 1 TRUE; seen: nothing"
+    assert f"case io/pulse passed before, now unconfirmed on vm/mujoco: {reason}" == found["what"]
+    assert "krl conform io/pulse --executor vm --robot mujoco --strict" == found["command"]
     assert f"{step}/index.html#case=io%2Fpulse" == found["page"]
     after = nightly_record("2026-01-02", {step: _conform("unconfirmed")}, {})
     where = "on MuJoCo: " if step == "conform-arm" else ""
-    assert f"{where}changed: io/pulse: pass → unconfirmed" in changes(before, after)
+    assert f"{where}no longer passes: io/pulse: pass → unconfirmed" in changes(before, after)
+
+
+@pytest.mark.parametrize("step", ["conform", "conform-arm"])
+def test_cases_that_vanished_are_a_failure_once(step: str, tmp_path: Path) -> None:
+    """The first one, with how many there were; the run after that is compared with this one."""
+    names = ["io/a", "io/b", "io/pulse"]
+    cases = [{"name": name, "verdict": "pass", "results": []} for name in names]
+    before = nightly_record("2026-01-01", {step: {"cases": cases}}, {})
+    made: dict[str, dict[str, Any]] = {step: {"cases": []}}
+    (found,) = failures(made, {}, before)
+    where = "on MuJoCo: " if step == "conform-arm" else ""
+    assert (f"{where}suite vanished: io, 3 cases", names) == (found["what"], [*found["cases"]])
+    told = f"3 failures of 1 kind: {where}suite vanished: io, 3 cases"
+    assert told == headline({"failures": [found]})
+    for text in (
+        write_nightly_page({"failures": [found]}, tmp_path).read_text("utf-8"),
+        nightly_summary({"failures": [found]}),
+    ):
+        assert told in text
+    assert [] == failures(made, {}, nightly_record("2026-01-02", made, {}))
+
+
+def test_cases_that_fail_alike_are_one_failure(tmp_path: Path) -> None:
+    """All of them are on the page with their links; the headline counts each."""
+    cases = [*_conform("fail", "crash: SyntaxError")["cases"], *_conform("fail", "else")["cases"]]
+    cases += [{**cases[0], "name": "io/again"}]
+    alike, other = failures({"conform": {"cases": cases}}, {})
+    assert "2 cases failed on vm/mujoco: crash: SyntaxError" == alike["what"]
+    assert "case io/pulse failed on vm/mujoco: else" == other["what"]
+    assert headline({"failures": [alike, other]}).startswith("3 failures of 2 kinds, first: 2 ")
+    text = write_nightly_page({"failures": [alike, other]}, tmp_path).read_text("utf-8")
+    assert '<a href="conform/index.html#case=io%2Fagain">io/again</a>' in text
+
+
+def test_a_run_without_enough_time_is_incomplete(tmp_path: Path) -> None:
+    """That is no failure, and not good either."""
+    run = {"steps": {"fuzz": {"status": "not run: no time left"}, "check": {"status": "ok"}}}
+    assert [] == failures({}, run["steps"])
+    for text in (
+        write_nightly_page(run, tmp_path).read_text("utf-8"),
+        nightly_summary(run),
+        headline(run),
+    ):
+        assert "incomplete: 1 step not run" in text
+
+
+def test_the_tile_of_runs_counts_every_verdict(tmp_path: Path) -> None:
+    """What is unconfirmed is neither hidden nor a failure."""
+    verdicts = {"pass": 7, "fail": 0, "unconfirmed": 2, "known-failure": 0, "skipped": 3}
+    text = write_nightly_page({"conform": {"verdicts": verdicts}}, tmp_path).read_text("utf-8")
+    assert "2 unconfirmed, 3 skipped" in text
 
 
 def test_a_step_that_did_not_end_is_a_failure() -> None:

@@ -1,11 +1,13 @@
 """`krl conform`: runs the conformance cases on any executors and robots."""
 
+import signal
+import threading
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 from rich.console import Console
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from conformance.suite.case import Case
 
 _SHOWN = 20
+#: The exit status of a run that was terminated, as in shells.
+_TERMINATED = 128 + signal.SIGTERM
 
 
 def conform(
@@ -52,6 +56,13 @@ def conform(
     html: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Write the page to this folder.")
     ] = None,
+    strict: Annotated[
+        bool,
+        typer.Option(
+            "--strict",
+            help="Unconfirmed cases count as failed: show expected and seen, exit status 1.",
+        ),
+    ] = False,
     lint: Annotated[
         bool, typer.Option("--lint", help="Only check whether the cases are well formed.")
     ] = False,
@@ -92,12 +103,13 @@ def conform(
 ) -> int:
     """Run conformance cases, and compare results with expectations and between executors.
 
-    Exit status 1 if a case fails. 'krl conform import FILE' evaluates a recording that was made
-    on a controller; conformance/CASES.md says how to make one. 'krl conform export FILE.zip' writes
-    the cases, their expectations as JSON, and a reference result, for other executors. 'krl conform
-    compare --parser NAME=WHAT' counts the cases that other parsers accept or reject correctly. 'krl
-    conform pairs --seed N' runs programs that combine features of motions, interrupts, triggers and
-    outputs in pairs; the executors must agree and no law may be broken.
+    Exit status 1 if a case fails. A run that is terminated (SIGTERM) records what it has. 'krl
+    conform import FILE' evaluates a recording that was made on a controller; conformance/CASES.md
+    says how to make one. 'krl conform export FILE.zip' writes the cases, their expectations as
+    JSON, and a reference result, for other executors. 'krl conform compare --parser NAME=WHAT'
+    counts the cases that other parsers accept or reject correctly. 'krl conform pairs --seed N'
+    runs programs that combine features of motions, interrupts, triggers and outputs in pairs; the
+    executors must agree and no law may be broken.
     """
     words = select or []
     check_files(json_file, junit)
@@ -121,6 +133,7 @@ def conform(
                 words,
                 *(executor, robot, json_file, junit, html, jobs, scheduler),
                 list_=list_,
+                strict=strict,
                 seed=seed,
             )
         from krl.commands.conform.planted_fault import planted
@@ -132,7 +145,10 @@ def conform(
         with planted(fault) as name:
             typer.echo(one_line(f"planted: {name}"))
             return _conform(
-                words, executor, robot, json_file, junit, html, 1, None, list_=False, fault=name
+                *(words, executor, robot, json_file, junit, html, 1, None),
+                list_=False,
+                strict=strict,
+                fault=name,
             )
 
 
@@ -156,11 +172,13 @@ def _conform(
     scheduler: str | None,
     *,
     list_: bool,
+    strict: bool,
     seed: int = 1,
     fault: str = "",
 ) -> int:
+    bad = ("fail", "unconfirmed") if strict else ("fail",)
     if words[:1] == ["import"]:
-        return _import(words[1:], json_file, junit, html)
+        return _import(words[1:], json_file, junit, html, bad)
     if words[:1] == ["export"]:
         return _export(words[1:], jobs, scheduler)
     cases = _drawn(seed) if words == ["pairs"] else _cases(words)
@@ -170,12 +188,22 @@ def _conform(
     executors = _chosen(executor, "executor")
     robots = _chosen(robot, "robot")
     begun = time.perf_counter()
-    results = _run(cases, executors, robots, jobs, scheduler)
+    results, running = _run(cases, executors, robots, jobs, scheduler)
     seconds = time.perf_counter() - begun
-    _write(results, executors, robots, seconds, json_file, junit, html, fault)
-    _print_summary(results, seconds)
-    failed = any(one.verdict == "fail" for one in results)
-    return FINDINGS if failed else FINE
+    left = [case.name for case in cases[len(results) :]]
+    more = {**({"fault": fault} if fault else {}), **_cut_off(left, running)}
+    _write(results, executors, robots, seconds, json_file, junit, html, more)
+    _print_summary(results, seconds, bad)
+    if left:
+        while_ = f" while running {', '.join(running)}" if running else ""
+        typer.echo(one_line(f"terminated{while_}: {len(left):,} cases are not done"), err=True)
+        return _TERMINATED
+    return FINDINGS if any(one.verdict in bad for one in results) else FINE
+
+
+def _cut_off(left: list[str], running: list[str]) -> dict[str, list[str]]:
+    """Return the fields of the record of a run that was terminated; none if no case is left."""
+    return {"not_run": left, "running": running} if left else {}
 
 
 def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
@@ -247,7 +275,8 @@ def _run(
     robots: Sequence[str],
     jobs: int | None,
     scheduler: str | None,
-) -> "list[CaseResult]":
+) -> "tuple[list[CaseResult], list[str]]":
+    """Return the results of the cases, and, if this process was terminated, what was running."""
     from conformance.evaluation.verdicts import KnownFailures
     from conformance.runner import run_cases
 
@@ -255,8 +284,29 @@ def _run(
         known = KnownFailures.load()
     except (OSError, ValueError) as error:
         raise InputError(f"the list of known failures cannot be read: {error}") from error
-    with progress_bar("running cases", len(cases)) as bar:
-        return run_cases(cases, executors, robots, known, jobs, bar, scheduler)
+    running: list[str] = []
+    with progress_bar("running cases", len(cases)) as bar, _stopped_by_termination():
+        given = (known, jobs, bar, scheduler, running.extend)
+        return run_cases(cases, executors, robots, *given), running
+
+
+@contextmanager
+def _stopped_by_termination() -> Iterator[None]:
+    """Let SIGTERM end `run_cases` early."""
+    from conformance.runner import Stopped
+
+    def stop(_signal: int, _frame: object) -> NoReturn:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # once is enough
+        raise Stopped
+
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _write(
@@ -267,35 +317,40 @@ def _write(
     json_file: Path | None,
     junit: Path | None,
     html: Path | None,
-    fault: str,
+    more: Mapping[str, object],
 ) -> None:
+    """Write the files that are asked for; ``more`` are further fields of the record.
+
+    The record is written last, because it says that the run is complete.
+    """
     from conformance.record import record_of
 
     version = metadata.version("krl-workbench")
     if json_file is not None or html is not None:
         record = record_of(results, executors, robots, version=version, seconds=seconds)
-        if fault:
-            record["fault"] = fault
-        write_json(record, json_file)
+        record |= more
         if html is not None:
             from reports.conformance.conform_page import write_conformance_page
 
             typer.echo(one_line(f"page: {write_conformance_page(record, html)}"))
+        write_json(record, json_file)
     if junit is not None:
         from conformance.junit import write_junit
 
         write_junit(results, junit)
 
 
-def _print_summary(results: "Sequence[CaseResult]", seconds: float) -> None:
-    """Print the failed cases, then the figures."""
+def _print_summary(
+    results: "Sequence[CaseResult]", seconds: float, bad: Collection[str] = ("fail",)
+) -> None:
+    """Print the cases with one of the ``bad`` verdicts, then the figures."""
     from conformance.evaluation.verdicts import VERDICTS
     from conformance.lint import coverage
     from reports.rendering.number_format import counted
 
-    failed = [one for one in results if one.verdict == "fail"]
+    failed = [one for one in results if one.verdict in bad]
     for one in failed[:_SHOWN]:
-        _print_failure(one)
+        _print_failure(one, bad)
     if len(failed) > _SHOWN:
         typer.echo(f"… and {counted(len(failed) - _SHOWN, 'more case')} failed")
     runs = [result for one in results for result in one.results]
@@ -309,10 +364,10 @@ def _print_summary(results: "Sequence[CaseResult]", seconds: float) -> None:
     typer.echo(f"rules that may fail: {covered} of {hard} have a case; {rate:.1f} runs a second")
 
 
-def _print_failure(one: "CaseResult") -> None:
+def _print_failure(one: "CaseResult", bad: Collection[str]) -> None:
     """Print on which setups a case failed and why; equal failures share a line."""
     typer.echo(shown(f"{one.case.name}: {one.case.title} [{', '.join(one.case.rules)}]"))
-    failed = [result for result in one.results if result.verdict == "fail"]
+    failed = [result for result in one.results if result.verdict in bad]
     for reason in dict.fromkeys(result.reason for result in failed):
         alike = [result for result in failed if result.reason == reason]
         names = ", ".join(f"{result.executor}/{result.robot}" for result in alike)
@@ -350,7 +405,10 @@ def _export(words: Sequence[str], jobs: int | None, scheduler: str | None) -> in
     path = Path(words[0])
     check_files(path)
     need(*ARM)
-    results = _run(_cases(words[1:]), ["tree"], ["kinematic"], jobs, scheduler)
+    cases = _cases(words[1:])
+    results, _ = _run(cases, ["tree"], ["kinematic"], jobs, scheduler)
+    if len(results) < len(cases):
+        return _TERMINATED
     try:
         write_export(path, results, metadata.version("krl-workbench"))
     except OSError as error:
@@ -378,7 +436,7 @@ def _compare(
             results = compared(cases, found, bar)
         names = list(found)
     seconds = time.perf_counter() - begun
-    _write(results, names, ["none"], seconds, json_file, junit, html, "")
+    _write(results, names, ["none"], seconds, json_file, junit, html, {})
     _print_comparison(results, names)
     own = any(one.executor == OWN and one.verdict == "fail" for r in results for one in r.results)
     return FINDINGS if own else FINE
@@ -399,7 +457,11 @@ def _print_comparison(results: "Sequence[CaseResult]", names: Sequence[str]) -> 
 
 
 def _import(
-    words: Sequence[str], json_file: Path | None, junit: Path | None, html: Path | None
+    words: Sequence[str],
+    json_file: Path | None,
+    junit: Path | None,
+    html: Path | None,
+    bad: Collection[str],
 ) -> int:
     """Evaluate a recording: its failures, and its evidence on unconfirmed rules."""
     from conformance.recording import Recording, RecordingError, answers, evaluate_recording
@@ -417,10 +479,10 @@ def _import(
         raise InputError(f"{words[0]}: none of its cases can be evaluated")
     seconds = time.perf_counter() - begun
     robots = sorted({result.robot for one in results for result in one.results})
-    _write(results, [recording.controller], robots, seconds, json_file, junit, html, "")
+    _write(results, [recording.controller], robots, seconds, json_file, junit, html, {})
     typer.echo(one_line(f"recorded on {recording.controller}"))
     for answer in answers(results):
         rest = f"against it: {', '.join(answer.against)}" if answer.against else "none against it"
         typer.echo(f"{answer.rule}: {answer.met} cases as we read it, {rest}")
-    _print_summary(results, seconds)
-    return FINDINGS if wrong or any(one.verdict == "fail" for one in results) else FINE
+    _print_summary(results, seconds, bad)
+    return FINDINGS if wrong or any(one.verdict in bad for one in results) else FINE

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from pathlib import Path
 from threading import Event
 from typing import Any
 
@@ -52,6 +53,22 @@ def test_what_takes_too_long_is_cut_off(monkeypatch: pytest.MonkeyPatch) -> None
     assert ["far"] == said
 
 
+def test_what_takes_too_long_may_write_what_it_has(tmp_path: Path) -> None:
+    """It is asked to end first."""
+    file = tmp_path / "had"
+    code = (
+        "import signal, sys, time; from pathlib import Path;"
+        f" signal.signal(signal.SIGTERM, lambda *_: sys.exit(Path({str(file)!r}).touch()));"
+        " print('ready', file=sys.stderr, flush=True); time.sleep(1e6)"
+    )
+    said: list[str] = []
+    seconds = 0.5
+    while not said:  # on a slow machine it may not have begun
+        assert None is run_limited(python(code), seconds, MUCH, said.append)
+        seconds *= 2
+    assert file.exists()
+
+
 def test_time_passes() -> None:
     """Who sleeps longer than allowed is not waited for."""
     assert None is run_limited(python("import time; time.sleep(1e6)"), 0.01, MUCH, ignore)
@@ -73,8 +90,12 @@ def test_memory_has_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
-def test_termination_ends_all() -> None:
-    """Who runs a command and is told to end leaves neither it nor what it has started.
+@pytest.mark.parametrize(
+    ("ending", "status"),
+    [("SIGTERM", 128 + signal.SIGTERM), ("SIGKILL", -signal.SIGKILL)],
+)
+def test_the_end_of_who_runs_it_ends_all(ending: str, status: int) -> None:
+    """Who runs a command and is told to end, or killed, leaves neither it nor what it has started.
 
     All of them hold one end of a pipe, whose other end is read until nobody does. The signal comes
     as early as can be: the command itself sends it to who runs it.
@@ -83,7 +104,7 @@ def test_termination_ends_all() -> None:
     step = (
         "import os, signal, subprocess, sys;"
         f" subprocess.Popen([sys.executable, '-c', {sleeper!r}]);"
-        f" os.kill(os.getppid(), signal.SIGTERM); {sleeper}"
+        f" os.kill(os.getppid(), signal.{ending}); {sleeper}"
     )
     run = (
         "import sys; from support.parallel.limited_process import run_limited;"
@@ -93,4 +114,4 @@ def test_termination_ends_all() -> None:
     with subprocess.Popen(python(run), stdin=write) as process, os.fdopen(read, "rb") as stream:
         os.close(write)
         assert b"" == stream.read()
-        assert 128 + signal.SIGTERM == process.wait()
+        assert status == process.wait()
