@@ -8,6 +8,9 @@ from reports.rendering.number_format import Figure, counted, moment, percent, sh
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
 from reports.rendering.sanitizing import shown
 
+_RUN = "each case on every executor and robot, against its rule and against one another"
+_RECORDED = "what a controller did in each case, against its rule"
+_MOST_LEFT = 2_000
 VERDICTS = ("pass", "fail", "unconfirmed", "known-failure", "skipped")
 
 
@@ -44,10 +47,18 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class ConformView:
-    """The data of the template, safe to print. ``fault`` is a planted fault."""
+    """The data of the template, safe to print.
+
+    ``subtitle`` says what was compared with what. ``fault`` is a planted fault. ``left`` are cases
+    without a result, with the reason why.
+    """
 
     headline: str
+    subtitle: str
+    selection: str
+    version: str
     fault: str
+    left: tuple[str, tuple[str, ...]]
     is_green: bool
     made: str
     figures: tuple[Figure, ...]
@@ -64,10 +75,23 @@ def conform_view(record: Mapping[str, Any]) -> ConformView:
     failed = count(nested(record, "case_verdicts"), "fail")
     total = count(record, "cases_total")
     headline = f"{counted(failed, 'case')} of {total:,} failed" if failed else "No case failed"
+    cut_off, recording = texts(record, "not_run"), text(record, "recording")
+    if cut_off:
+        headline = f"{headline}; cut off before {counted(len(cut_off), 'case')}"
+    if recording:
+        headline = f"Recording of {recording}: {headline[0].lower()}{headline[1:]}"
+    left = cut_off or texts(record, "not_recorded")
     return ConformView(
-        headline=headline if total else "No case was run",
+        headline=shown(headline, 200) if total else "No case was run",
+        subtitle=_RECORDED if recording else _RUN,
+        selection=shown(" ".join(texts(record, "selection")), 200),
+        version=shown(text(record, "version"), 40),
+        left=(
+            f"{counted(len(left), 'case')} {'not run' if cut_off else 'not recorded'}",
+            tuple(shown(name, 80) for name in left[:_MOST_LEFT]),
+        ),
         fault=shown(text(record, "fault"), 200),
-        is_green=bool(total) and not failed,
+        is_green=bool(total) and not failed and not cut_off,
         made=shown(moment(text(record, "generated")), 60),
         figures=tuple(_figures(record)),
         columns=columns,
@@ -114,7 +138,8 @@ def _figures(record: Mapping[str, Any]) -> list[Figure]:
         Figure(
             "not sure enough to fail",
             f"{count(verdicts, 'unconfirmed'):,}",
-            f"{count(verdicts, 'known-failure'):,} known, {count(verdicts, 'skipped'):,} skipped",
+            f"{count(verdicts, 'known-failure'):,} known, "
+            f"{count(verdicts, 'skipped'):,} skipped everywhere",
         ),
         Figure(
             "rules that may fail have cases",

@@ -94,12 +94,16 @@ def test_a_run_that_is_terminated_records_what_it_has(
 
     monkeypatch.setattr("conformance.runner.observe", see)
     file = tmp_path / "record.json"
-    options = ("--executor", "tree", "--robot", "none", "--jobs", 1, "--json", file)
+    options = ("--executor", "tree", "--robot", "none", "--json", file, "--html", tmp_path / "page")
     assert 143 == run(*cases, *options)
     record = json.loads(file.read_text(encoding="utf-8"))
     names = [one["name"] for one in record["cases"]]
     assert 3 == len([*names, *record["not_run"]])
     assert [f"{record['not_run'][0]} on tree/none"] == record["running"]
+    page = (tmp_path / "page" / "index.html").read_text(encoding="utf-8")
+    assert f"; cut off before {len(record['not_run'])} case" in page
+    assert f"not run</summary>{', '.join(record['not_run'])}" in page
+    assert 'class="green"' not in page
     assert f"terminated while running {record['running'][0]}" in capsys.readouterr().err
 
 
@@ -157,8 +161,13 @@ def test_recording_is_made_from_the_list_and_evaluated(
         ],
     }
     recording.write_text(json.dumps(told), encoding="utf-8")
-    assert 0 == run("import", recording)
+    assert 0 == run("import", recording, "--html", tmp_path)
     assert "recorded on KR C4 KSS 8.6" in capsys.readouterr().out
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert "<h1>Recording of KR C4 KSS 8.6: no case failed" in page
+    assert "cases not recorded</summary>" in page
+    assert "data/round_down, " in page
+    assert "every executor" not in page
     event["value"] = 7
     recording.write_text(json.dumps(told), encoding="utf-8")
     assert 1 == run("import", recording)
@@ -177,6 +186,7 @@ def test_a_planted_fault_is_found_and_shown_on_the_page(
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert "A fault was planted: triggers: only the last trigger counts" in page
     assert "1 case of 1 failed" in page
+    assert "<span>Selection: trigger/two_at_once</span><span>Version " in page
     assert 0 == run(*words)
     assert "A fault was planted" not in (tmp_path / "index.html").read_text(encoding="utf-8")
 

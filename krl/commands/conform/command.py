@@ -191,7 +191,7 @@ def _conform(
     results, running = _run(cases, executors, robots, jobs, scheduler)
     seconds = time.perf_counter() - begun
     left = [case.name for case in cases[len(results) :]]
-    more = {**({"fault": fault} if fault else {}), **_cut_off(left, running)}
+    more = {"selection": words, "fault": fault, "not_run": left, "running": running}
     _write(results, executors, robots, seconds, json_file, junit, html, more)
     _print_summary(results, seconds, bad)
     if left:
@@ -199,11 +199,6 @@ def _conform(
         typer.echo(one_line(f"terminated{while_}: {len(left):,} cases are not done"), err=True)
         return _TERMINATED
     return FINDINGS if any(one.verdict in bad for one in results) else FINE
-
-
-def _cut_off(left: list[str], running: list[str]) -> dict[str, list[str]]:
-    """Return the fields of the record of a run that was terminated; none if no case is left."""
-    return {"not_run": left, "running": running} if left else {}
 
 
 def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
@@ -319,7 +314,7 @@ def _write(
     html: Path | None,
     more: Mapping[str, object],
 ) -> None:
-    """Write the files that are asked for; ``more`` are further fields of the record.
+    """Write the files that are asked for; ``more`` are further fields of the record, if not empty.
 
     The record is written last, because it says that the run is complete.
     """
@@ -328,7 +323,7 @@ def _write(
     version = metadata.version("krl-workbench")
     if json_file is not None or html is not None:
         record = record_of(results, executors, robots, version=version, seconds=seconds)
-        record |= more
+        record |= {name: value for name, value in more.items() if value}
         if html is not None:
             from reports.conformance.conform_page import write_conformance_page
 
@@ -436,7 +431,8 @@ def _compare(
             results = compared(cases, found, bar)
         names = list(found)
     seconds = time.perf_counter() - begun
-    _write(results, names, ["none"], seconds, json_file, junit, html, {})
+    more = {"selection": list(words)}
+    _write(results, names, ["none"], seconds, json_file, junit, html, more)
     _print_comparison(results, names)
     own = any(one.executor == OWN and one.verdict == "fail" for r in results for one in r.results)
     return FINDINGS if own else FINE
@@ -472,14 +468,18 @@ def _import(
     begun = time.perf_counter()
     with as_input_errors(RecordingError, CaseError):
         recording = Recording.read(Path(words[0]))
-        results, wrong = evaluate_recording(recording, find_cases())
+        cases = find_cases()
+        results, wrong = evaluate_recording(recording, cases)
     for text in wrong:
         typer.echo(one_line(text), err=True)
     if not results:
         raise InputError(f"{words[0]}: none of its cases can be evaluated")
     seconds = time.perf_counter() - begun
     robots = sorted({result.robot for one in results for result in one.results})
-    _write(results, [recording.controller], robots, seconds, json_file, junit, html, {})
+    there = {one.case.name for one in results}
+    left = [case.name for case in cases if case.phase == "run" and case.name not in there]
+    more = {"recording": recording.controller, "not_recorded": left}
+    _write(results, [recording.controller], robots, seconds, json_file, junit, html, more)
     typer.echo(one_line(f"recorded on {recording.controller}"))
     for answer in answers(results):
         rest = f"against it: {', '.join(answer.against)}" if answer.against else "none against it"
