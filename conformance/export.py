@@ -2,6 +2,9 @@
 
 ``expectations.json`` has the cases with their expectations, in the format of
 ``expectations.schema.json``. ``cases/`` has their files, as a controller holds them.
+``rules.json`` has the rules on which they rest, ``faults.json`` our names of faults with their
+numbers, ``machines/`` and ``profiles/`` the arm and the controllers of the cases, ``docs/`` the
+documents to which the README refers (a checkout has all of them, a wheel only the rules).
 ``reference.json`` is what the tree interpreter and the planned arm do with them, in the form of a
 recording (`conformance.recording`), so that it can be compared with one's own results and evaluated
 like them. A fault is identified by its message number; if none is known, any fault meets the
@@ -11,7 +14,9 @@ expectation, because our names of faults are not binding.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from importlib import resources
 from pathlib import Path
 from typing import Any, Final
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
@@ -20,10 +25,27 @@ from conformance.evaluation.observation import Observation
 from conformance.recording import FORMAT
 from conformance.runner import CaseResult
 from conformance.suite.case import Case
-from conformance.suite.expectations import KINDS, PHASES, Anchor, Expectation, When
-from conformance.suite.registry import basis
+from conformance.suite.expectations import (
+    KINDS,
+    PHASES,
+    Anchor,
+    Expectation,
+    When,
+    expected_ending,
+)
+from conformance.suite.registry import basis, registry
+from conformance.suite.semantics import page
+from interp.controller import state
+from interp.controller.state.messages import OWN_FAULTS
+from interp.controller.state.profile import profile_names
+from interp.robot.models import DEFAULT, model_file
 from interp.values.faults import FAULTS
 
+#: Names of faults that stand in no table, because their texts differ.
+_FAULTS: Final = {
+    "link": ("the program cannot begin: a name is declared nowhere, or a file is wrong", "SCO-01"),
+    "spline": ("a spline block cannot be planned", "SPL-10"),
+}
 EXPECTATIONS: Final = "krl-expectations/1"
 _TEXT: Final = {"type": "string"}
 _TEXTS: Final = {"type": "array", "items": _TEXT}
@@ -61,7 +83,11 @@ SCHEMA: Final[Mapping[str, Any]] = {
                         "robot": _TEXT,
                         "seconds": _NUMBER,
                         "digest": _TEXT,
+                        "main": _TEXT,
                         "files": _TEXTS,
+                        "machine": _TEXT,
+                        "unconfirmed": _TEXT,
+                        "ending": _object({"accepted": _TEXTS, "basis": _TEXT, "may_fail": _TRUTH}),
                         "may_fail": _TRUTH,
                         "expectations": {
                             "type": "array",
@@ -113,9 +139,24 @@ def _case(case: Case) -> dict[str, Any]:
         "robot": case.robot,
         "seconds": case.seconds,
         "digest": case.digest,
+        "main": case.main,
         "files": [source.path for source in case.sources],
+        "machine": "$machine.dat" if case.machine else f"machines/{DEFAULT}.dat",
+        "unconfirmed": case.unconfirmed,
+        "ending": _ending(case),
         "may_fail": case.may_fail,
         "expectations": [_expectation(one, case) for one in case.expectations],
+    }
+
+
+def _ending(case: Case) -> dict[str, Any]:
+    """Return how the program may end; nothing is accepted before a program runs."""
+    accepted, causes = expected_ending(case.expectations)
+    surest = max(causes, key=case.is_sure, default=None)
+    return {
+        "accepted": list(accepted) if case.phase == "run" else [],
+        "basis": case.basis if surest is None else surest.basis or case.basis,
+        "may_fail": case.may_fail if surest is None else case.is_sure(surest),
     }
 
 
@@ -199,6 +240,10 @@ def write_export(path: Path, results: Sequence[CaseResult], version: str) -> Non
     """Write the archive; equal results produce equal bytes."""
     cases = [one.case for one in results]
     texts = {
+        "rules.json": _json({"rules": [asdict(one) for one in registry().values()]}),
+        "faults.json": _json({"faults": list(_faults())}),
+        "docs/semantics.md": page(),
+        **dict(_companions()),
         "expectations.json": _json(expectations_of(cases)),
         "expectations.schema.json": _json(SCHEMA),
         "reference.json": _json(reference_of(results, version)),
@@ -211,6 +256,26 @@ def write_export(path: Path, results: Sequence[CaseResult], version: str) -> Non
             entry = ZipInfo(name)
             entry.compress_type = ZIP_DEFLATED
             archive.writestr(entry, text)
+
+
+def _faults() -> Iterator[dict[str, Any]]:
+    """Yield our faults; a fault ``message_N`` is the controller's message N."""
+    for one in FAULTS.values():
+        yield {"slug": one.slug, "number": one.number, "text": one.text, "rules": list(one.rules)}
+    for slug, (text, rule) in (OWN_FAULTS | _FAULTS).items():
+        yield {"slug": slug, "number": None, "text": text, "rules": [rule]}
+
+
+def _companions() -> Iterator[tuple[str, str]]:
+    """Yield files of the repository that explain the archive: their names in it and their texts."""
+    yield f"machines/{DEFAULT}.dat", model_file(f"{DEFAULT}.dat").read_text(encoding="utf-8")
+    profiles = resources.files(state).joinpath("profiles")
+    for name in profile_names():
+        yield f"profiles/{name}.toml", profiles.joinpath(f"{name}.toml").read_text("utf-8")
+    root = Path(__file__).parents[1]
+    for name in ("LICENSE", *(f"docs/{one}.md" for one in ("trace", "io-scripts", "controller"))):
+        if (root / name).is_file():
+            yield name, (root / name).read_text(encoding="utf-8")
 
 
 def _json(data: Mapping[str, Any]) -> str:

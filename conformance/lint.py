@@ -9,15 +9,16 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 from typing import Final
 
-from conformance.evaluation.execution import PROFILES
+from conformance.evaluation.execution import FRONT, PROFILES, Setup, observe
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.suite.case import CASES, ENDINGS, Case, CaseError, find_cases
-from conformance.suite.expectations import KINDS, Expectation
-from conformance.suite.registry import Rule, basis, corners, registry
+from conformance.suite.expectations import KINDS, Expectation, When
+from conformance.suite.registry import Clause, Rule, basis, corners, registry
 from grammar.syntax.build import read_module
 from interp.controller.inputs.input_script import Script, ScriptError
 
@@ -55,6 +56,8 @@ _CLAUSE_WORDS: Final = {
     "resume": "RESUME",
     "halt": "HALT",
 }
+#: Topics whose rules are about no time, where they do not mention the advance run.
+_TIMELESS: Final = frozenset("TYP ARI FCT SCO MSG POS ORI CON".split())
 #: A line that asks for the number of the last error, and one after which that number is another.
 _ASKED: Final = re.compile(r"=.*\$ERR\.NUMBER", re.IGNORECASE)
 _CLEARED: Final = re.compile(r"\s*(ERR_CLEAR\b|\$ERR\.NUMBER *=|DEF)", re.IGNORECASE)
@@ -141,6 +144,7 @@ def _defects(case: Case) -> Iterator[str]:
     yield from _expectation_defects(case)
     yield from _clause_defects(case)
     yield from _error_defects(case)
+    yield from _refusals(case)
 
 
 def _text_defects(case: Case) -> Iterator[str]:
@@ -185,11 +189,37 @@ def _clause_defects(case: Case) -> Iterator[str]:
             is_meant = one.text.startswith(begins)
             if is_meant and not any(word in clause.statement for word in words.split()):
                 yield f"line {one.line}: {clause.id} says nothing of {one.text!r}"
-        if clause.id.startswith("SUB-") and one.when and one.when.relation == "at":
-            yield f"line {one.line}: a submit program has no period for {one.text!r} [SUB-03]"
+        if one.when and (why := _untimed(clause, one.when)):
+            yield f"line {one.line}: {why} for {one.text!r}"
         number = _message_of(case, one)
-        if number and number not in _numbers_of(case):
-            yield f"line {one.line}: no rule of the case says that {number} is the message"
+        rests_on = [clause.statement] if case.phase == "run" else _statements_of(case)
+        if number and "never" not in one.arguments and number not in _numbers_in(rests_on):
+            yield f"line {one.line}: {clause.id} does not say that {number} is the message"
+
+
+def _untimed(clause: Rule | Clause, when: When) -> str:
+    """Return why a clause cannot give the time of a hard expectation; "" if it may."""
+    topic = clause.id[:3]
+    if topic == "SUB" and when.relation != "after" and not (when.last or when.first).event:
+        return "a submit program has no period [SUB-03]"
+    if topic == "INT" and when.relation in ("at", "between"):
+        return "the latency of an interrupt is not known [INT-18]"
+    if topic in _TIMELESS and "advance" not in clause.statement and when.relation != "after":
+        return f"{clause.id} gives no time"
+    return ""
+
+
+def _refusals(case: Case) -> Iterator[str]:
+    """Yield that a program which the check refuses is expected to run: a controller refuses it.
+
+    Machine data are written by the controller itself.
+    """
+    if case.phase != "run" or not case.may_fail:
+        return
+    for one in observe(replace(case, phase="check"), Setup(FRONT, "none")).findings:
+        is_refused = one.severity == "error" and not one.may_come_late(one.code)
+        if is_refused and one.file.lower() != "$machine.dat":
+            yield f"{one.file}:{one.line}: {one.code} refuses what is expected to run"
 
 
 def _message_of(case: Case, one: Expectation) -> int:
@@ -204,13 +234,16 @@ def _message_of(case: Case, one: Expectation) -> int:
     return int(found[1]) if found and not is_own else 0
 
 
-def _numbers_of(case: Case) -> set[int]:
-    """Return the message numbers that the rules of a case mention."""
+def _statements_of(case: Case) -> list[str]:
+    return [registry()[id_].statement for id_ in case.rules]
+
+
+def _numbers_in(statements: Iterable[str]) -> set[int]:
+    """Return the message numbers that statements mention."""
     found: set[int] = set()
-    for id_ in case.rules:
-        for text in _NUMBERS.findall(registry()[id_].statement):
-            first, _, last = text.partition(" to ")
-            found.update(range(int(first), int(last or first) + 1))
+    for text in chain.from_iterable(map(_NUMBERS.findall, statements)):
+        first, _, last = text.partition(" to ")
+        found.update(range(int(first), int(last or first) + 1))
     return found
 
 

@@ -7,6 +7,7 @@ is to confirm or refute unconfirmed rules.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -46,7 +47,7 @@ class Recording:
     def read(path: Path) -> Recording:
         """Read a recording from a file. Raises `RecordingError`."""
         try:
-            data = json_of(read_bytes(path).decode("utf-8"))
+            data = json_of(read_bytes(path).decode("utf-8"), float)
         except (OSError, ValueError) as error:
             raise RecordingError(f"{path}: cannot be read: {error}") from error
         if not isinstance(data, dict) or data.get("format") != FORMAT:
@@ -66,6 +67,7 @@ class Recording:
                 raise RecordingError(f"{path}: case {number} is not an object")
             name = entry.get("case", number)
             try:
+                _check_finite(entry)
                 seen[str(entry["case"])] = (str(entry["digest"]), _observation(entry, cycle))
             except KeyError as error:
                 raise RecordingError(f"{path}: case {name} has no {error}") from error
@@ -77,10 +79,19 @@ class Recording:
         return Recording(name, seen)
 
 
+def _check_finite(value: object) -> None:
+    """Raise `ValueError` for a number without end anywhere in a value of JSON."""
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError(f"{value} is no finite number")
+    parts = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    for part in parts:
+        _check_finite(part)
+
+
 def _observation(entry: Mapping[str, Any], cycle: int) -> Observation:
     ending = str(entry.get("ending", ""))
     if ending not in _ENDINGS:
-        raise ValueError(f"no ending: {ending}")
+        raise ValueError(f"the ending is {', '.join(_ENDINGS[1:])} or empty, not {ending!r}")
     findings = [
         Finding(
             str(one["file"]),

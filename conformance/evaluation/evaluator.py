@@ -25,7 +25,7 @@ from conformance.evaluation.run_laws import run_violations
 from conformance.evaluation.spline_laws import spline_violations
 from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, unwatched
 from conformance.suite.case import Case
-from conformance.suite.expectations import KINDS, Expectation
+from conformance.suite.expectations import KINDS, Expectation, expected_ending
 from conformance.suite.registry import basis
 
 State = Literal["met", "unmet", "open"]
@@ -36,7 +36,8 @@ class Check:
     """The result of one expectation.
 
     ``actual`` is what was observed instead, or why it is open. An unmet check with ``is_sure``
-    fails the case. ``basis`` is the rule or clause on which the expectation rests.
+    fails the case. ``basis`` is the rule or clause on which the expectation rests. ``is_absence``
+    says that silence meets it, so that it shows nothing by itself.
     """
 
     file: str
@@ -46,6 +47,7 @@ class Check:
     actual: str = ""
     is_sure: bool = True
     basis: str = ""
+    is_absence: bool = False
 
 
 _ROBOTS = ("none", "kinematic", "mujoco")
@@ -59,15 +61,12 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
         replace(check, is_sure=case.is_sure(one), basis=one.basis or case.basis)
         for check, one in zip(found, case.expectations, strict=True)
     ]
-    ended = evaluate_ending(case.expectations, seen, case.main)
     every = (
-        chain(_unexpected_outputs(case, seen), ended) if is_run else _unexpected_errors(case, seen)
+        chain(_unexpected_outputs(case, seen), _unexpected_ending(case, seen))
+        if is_run
+        else _unexpected_errors(case, seen)
     )
-    return [
-        *expected,
-        *(replace(one, is_sure=case.may_fail or seen.ending == "crash") for one in every),
-        *_law_violations(case, seen),
-    ]
+    return [*expected, *every, *_law_violations(case, seen)]
 
 
 def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
@@ -114,6 +113,9 @@ def evaluate_run(expectations: Sequence[Expectation], seen: Observation) -> list
         if lacking:
             found.append(_check(one, "open", f"{lacking} was not watched"))
             continue
+        if one.is_absence and not seen.shows_run:
+            found.append(_check(one, "open", "nothing shows that the program was run"))
+            continue
         is_of_path = KINDS[one.kind].robot != "none"
         evaluated = evaluate_on_path if is_of_path else evaluate_on_trace
         found.append(_check(one, *evaluated(one, seen, marks)))
@@ -129,7 +131,7 @@ def _marks(expectations: Sequence[Expectation]) -> Marks:
 
 
 def _check(one: Expectation, state: State, actual: str = "") -> Check:
-    return Check(one.file, one.line, one.text, state, actual)
+    return Check(one.file, one.line, one.text, state, actual, is_absence=one.is_absence)
 
 
 # ------------------------------------------------------------------------------------- findings
@@ -159,16 +161,20 @@ def _check_recorded_finding(one: Expectation, seen: Observation) -> Check:
     """Check an expectation about findings against a recording of a real controller.
 
     A controller has its own numbers, so only the line is compared. It may report an error at the
-    first word of the next line.
+    first word of the next line, a syntax error anywhere in the file, and when the program runs what
+    we warn of or what has a number below 2000.
     """
+    in_file = [each for each in seen.findings if each.file == one.file]
     places = (one.line, one.line + 1)
-    there = [each for each in seen.findings if each.file == one.file and each.line in places]
+    there = in_file if one.kind == "syntax" else [each for each in in_file if each.line in places]
     actual = _listed(seen.findings) or "accepted"
     code = one.arguments[0] if one.arguments else ""
     if one.kind in ("note", "silent") or code.startswith("KRL6"):
         return _check(one, "open", "only our checker reports this")
     if one.kind == "accepted":
         return _check(one, "unmet" if seen.findings else "met", actual)
+    if not there and (one.kind == "warning" or Finding.may_come_late(code)):
+        return _check(one, "open", "a controller may report it when the program runs")
     codes = {found.code for found in there}
     is_met = code in codes if code.startswith("KSS") and any(codes) else bool(there)
     return _check(one, "met" if is_met else "unmet", actual)
@@ -190,7 +196,8 @@ def _unexpected_errors(case: Case, seen: Observation) -> Iterator[Check]:
     for found in seen.findings:
         if found.severity == "error" and (found.file, found.line) not in expected:
             text = "no error but those expected"
-            yield Check(found.file, found.line, text, "unmet", f"{found.code} {found.message}")
+            actual = f"{found.code} {found.message}"
+            yield Check(found.file, found.line, text, "unmet", actual, case.may_fail)
 
 
 def _unexpected_outputs(case: Case, seen: Observation) -> Iterator[Check]:
@@ -198,20 +205,46 @@ def _unexpected_outputs(case: Case, seen: Observation) -> Iterator[Check]:
 
     The values of analog outputs are what their expectations are about, within a tolerance.
     """
-    expected = {
-        (one.kind, *one.arguments[: 2 if one.kind == "out" else 1], one.file, one.line)
+    changes = [
+        one
         for one in case.expectations
         if one.kind in ("out", "anout") and "never" not in one.arguments
+    ]
+    expected = {
+        (one.kind, *one.arguments[: 2 if one.kind == "out" else 1], one.file, one.line)
+        for one in changes
     }
-    watched = {(kind, number) for kind, number, *_ in expected}
     for event in seen.of_kind("out", "anout"):
         number, value = str(event.fields.get("number")), str(event.fields.get("value")).upper()
         changed = (value,) if event.kind == "out" else ()
         what = (event.kind, number, *changed, event.file, event.line)
-        if (event.kind, number) in watched and what not in expected:
+        about = [one for one in changes if (one.kind, one.arguments[0]) == (event.kind, number)]
+        if about and what not in expected:
             which = "analog output" if event.kind == "anout" else "output"
-            text = f"{which} {number} changes only as it is said"
-            yield Check(event.file, event.line, text, "unmet", f"{value} at {event.time} us")
+            text, actual = (
+                f"{which} {number} changes only as it is said",
+                f"{value} at {event.time} us",
+            )
+            check = Check(event.file, event.line, text, "unmet", actual)
+            yield _resting_on(about, case, check)
+
+
+def _unexpected_ending(case: Case, seen: Observation) -> Iterator[Check]:
+    """Yield a check if the program ends otherwise; it is as sure as what says how it ends."""
+    causes = expected_ending(case.expectations)[1]
+    for check in evaluate_ending(case.expectations, seen, case.main):
+        if seen.ending == "crash":
+            yield check
+        elif causes:
+            yield _resting_on(causes, case, check)
+        else:
+            yield replace(check, is_sure=case.may_fail)
+
+
+def _resting_on(causes: Sequence[Expectation], case: Case, check: Check) -> Check:
+    """Return a check with the basis of the surest of the expectations from which it follows."""
+    surest = max(causes, key=case.is_sure)
+    return replace(check, is_sure=case.is_sure(surest), basis=surest.basis or case.basis)
 
 
 def evaluate_ending(
@@ -220,20 +253,15 @@ def evaluate_ending(
     """Yield a check if the program did not end by itself and no other ending is expected."""
     if not seen.ending:  # the ending was not recorded
         return
-    kinds = {one.kind: one for one in expectations}
     last = seen.events[-1] if seen.events else None
     file, line = (last.file, last.line) if last else (main, 0)
     if seen.ending == "crash":
         yield Check(file, line, "no crash", "unmet", seen.note)
         return
-    runs_on = any(one.kind == "runs" and one.arguments == ("on",) for one in expectations)
-    faults = [event for event in seen.events if event.kind == "fault"]
-    is_robot = not faults or any(event.task == "robot" for event in faults)
-    wanted = "fault" if "fault" in kinds and is_robot else "running" if runs_on else "end"
-    if seen.ending != wanted and not (
-        wanted == "end" and "halt" in kinds and seen.ending == "halt"
-    ):
+    wanted, _ = expected_ending(expectations)
+    if seen.ending not in wanted:
+        faults = [event for event in seen.events if event.kind == "fault"]
         actual = (
             f"{seen.ending} {faults[-1].fields.get('text', '') if faults else seen.note}".strip()
         )
-        yield Check(file, line, f"the program ends with: {wanted}", "unmet", actual)
+        yield Check(file, line, f"the program ends with: {wanted[0]}", "unmet", actual)

@@ -25,6 +25,11 @@ class Finding:
     code: str
     message: str = ""
 
+    @staticmethod
+    def may_come_late(code: str) -> bool:
+        """Whether a message has a number below 2000: those may come while a program runs."""
+        return code.startswith("KSS") and int(code[3:]) < 2000
+
 
 @dataclass(frozen=True, slots=True)
 class Event:
@@ -89,6 +94,12 @@ class Observation:
     machine: MachineData | None = None
     watched: frozenset[str] | None = None
     values: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def shows_run(self) -> bool:
+        """Whether anything shows that the program was run; a recording may be empty."""
+        has_lines = self.watched is None or "line" in self.watched
+        return bool(self.events) or (bool(self.ending) and not has_lines)
 
     def of_kind(self, *kinds: str) -> Iterable[Event]:
         """Return the events of some kinds, in their order."""

@@ -1,11 +1,11 @@
 """Verdicts: the outcome of a case on one executor and robot, and the known failures.
 
 ==============  ==================================================================================
-pass            all expectations are met
+pass            no expectation is unmet, and one about something that happens is met
 fail            an expectation is not met, or executors differ, or a known failure passes
 unconfirmed     an expectation is not met, but its basis is not certain enough to fail an executor
 known-failure   an expectation is not met, and ``known_failures.toml`` gives the reason
-skipped         no expectation could be evaluated
+skipped         no expectation could be evaluated, or only what does not happen was seen
 ==============  ==================================================================================
 """
 
@@ -76,8 +76,9 @@ def verdict_of(checks: Sequence[Check], known: str = "") -> tuple[Verdict, str]:
         if known:
             return "known-failure", known
         return ("fail" if first.is_sure else "unconfirmed"), reason
-    if all(one.state == "open" for one in checks):
-        return "skipped", checks[0].actual if checks else "nothing is expected"
+    main = [one for one in checks if not one.is_absence] or checks
+    if all(one.state == "open" for one in main):
+        return "skipped", main[0].actual if main else "nothing is expected"
     if known:
         return "fail", f"it passes, though it is listed as a known failure: {known}"
     return "pass", ""

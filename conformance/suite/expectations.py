@@ -8,7 +8,7 @@ whether it is met.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final, Literal, cast
@@ -163,6 +163,34 @@ class Expectation:
     def needs(self) -> Literal["none", "kinematic", "mujoco"]:
         """The simplest robot with which it can be evaluated."""
         return "kinematic" if self.near else KINDS[self.kind].robot
+
+    @property
+    def is_absence(self) -> bool:
+        """Whether it says that something does not happen, so that silence meets it."""
+        words = (self.kind, *self.arguments)
+        return (
+            self.kind == "silent"
+            or words[-1] == "never"
+            or words[-2:] in (("runs", "0"), ("times", "0"))
+        )
+
+
+def expected_ending(
+    expectations: Sequence[Expectation],
+) -> tuple[tuple[str, ...], tuple[Expectation, ...]]:
+    """Return how the robot's program may end, and the expectations that say so, if there are any.
+
+    A fault of a submit program does not end that of the robot.
+    """
+    causes = {
+        "fault": lambda one: one.kind == "fault" and not one.file.lower().endswith(".sub"),
+        "running": lambda one: one.kind == "runs" and one.arguments == ("on",),
+        "halt": lambda one: one.kind == "halt",
+    }
+    for ending, is_cause in causes.items():
+        if found := tuple(one for one in expectations if is_cause(one)):
+            return (("end", "halt") if ending == "halt" else (ending,)), found
+    return ("end",), ()
 
 
 _WORDS: Final = re.compile(r'"[^"]*"|[^\s"]+')

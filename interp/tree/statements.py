@@ -199,7 +199,7 @@ class Statements(Motions):
 
     # ----------------------------------------------------------------------- control flow
 
-    def _if(self, node: ast.If) -> Steps[None]:
+    def _if(self, node: ast.If) -> Steps[None]:  # [CTL-13]
         is_entered = self._place_on_way(node.body) is not None
         if is_entered or (not self._way and (yield from self._is_true(node.condition))):
             yield from self._block(node.body)

@@ -13,6 +13,7 @@ import math
 import os
 import stat
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
@@ -72,10 +73,15 @@ def toml_of(text: str) -> dict[str, Any]:
         raise DocumentError(f"not TOML: {error}") from None
 
 
-def json_of(text: str) -> object:
-    """Return the value of a JSON text with finite numbers; raises `DocumentError`."""
+def json_of(text: str, number: Callable[[str], object] | None = None) -> object:
+    """Return the value of a JSON text; raises `DocumentError`.
+
+    ``number`` reads numbers with a fraction and constants such as Infinity; without it they must be
+    finite.
+    """
+    read = number or _finite
     try:
-        value: object = json.loads(text, parse_float=_finite, parse_constant=_finite)
+        value: object = json.loads(text, parse_float=read, parse_constant=read)
     except RecursionError:
         raise DocumentError("not JSON: nested too deeply") from None
     except ValueError as error:

@@ -39,6 +39,8 @@ def test_archive_has_the_files_of_cases(archive: Path, cases: list[Case]) -> Non
         names = set(opened.namelist())
         text = opened.read("cases/posture/five_axes_line/$machine.dat").decode()
     assert {"expectations.json", "expectations.schema.json", "reference.json"} <= names
+    assert {"rules.json", "faults.json", "machines/kr6r900.dat", "profiles/kss8.toml"} <= names
+    assert {"LICENSE", "docs/trace.md", "docs/io-scripts.md", "docs/semantics.md"} <= names
     assert {f"cases/{one.name}/{each.path}" for one in cases for each in one.sources} <= names
     assert "$DEF_A4FIX=TRUE" in text
 
@@ -70,3 +72,18 @@ def test_a_fault_is_reported_by_its_number(
         results, _ = evaluate_recording(Recording.read(path), cases)
         found += [one.verdict for one in results]
     assert ["pass", "fail"] == found
+
+
+def test_every_word_of_an_expectation_is_explained(archive: Path, own_cases: list[Case]) -> None:
+    """Bases are rules of the archive, faults without a number are in its list."""
+    with ZipFile(archive) as opened:
+        rules = json.loads(opened.read("rules.json"))["rules"]
+        faults = {one["slug"] for one in json.loads(opened.read("faults.json"))["faults"]}
+    told = expectations_of(own_cases)["cases"]
+    expected = [one for case in told for one in (*case["expectations"], case["ending"])]
+    ids = {part["id"] for rule in rules for part in (rule, *rule["clauses"])}
+    assert set() == {one["basis"] for one in expected} - ids
+    words = {one["arguments"][0] for one in expected if one.get("kind") == "fault"}
+    assert set() == {word for word in words if not word.isdigit()} - faults
+    unsure = next(case for case in told if case["case"] == "data/abs_of_least")["ending"]
+    assert {"accepted": ["fault"], "basis": "ARI-12", "may_fail": False} == unsure

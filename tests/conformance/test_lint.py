@@ -64,12 +64,35 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
             "line 6: line 5 has not cleared $ERR",
         ),
         ("control/good.src", "runs 1", "halt", "CTL-01 says nothing of"),
-        ("control/good.src", "runs 1", "fault 1444", "no rule of the case says that 1444"),
+        ("control/good.src", "runs 1", "fault 1444", "CTL-01 does not say that 1444"),
         (
             "submit/good.src",
             GOOD,
             GOOD.replace("CTL", "SUB").replace("runs", "line at"),
             "has no period",
+        ),
+        (
+            "submit/good.src",
+            GOOD,
+            GOOD.replace("CTL", "SUB").replace("runs 1", "line before 2"),
+            "has no period",
+        ),
+        (
+            "interrupt/good.src",
+            GOOD,
+            GOOD.replace("CTL-01", "INT-05").replace("runs 1", "line at in 1"),
+            "the latency of an interrupt is not known",
+        ),
+        (
+            "types/good.src",
+            GOOD,
+            GOOD.replace("CTL-01", "TYP-09").replace("runs 1", "line at 0.5"),
+            "TYP-09 gives no time",
+        ),
+        (
+            *("control/good.src", "HALT ;> runs 1"),
+            "PTP_SPLINE ;> runs 1\n    SLIN {X 1}\n  ENDSPLINE",
+            "KSS2380 refuses what is expected to run",
         ),
     ],
 )

@@ -91,6 +91,24 @@ def test_own_codes_are_any_complaint_about_the_line(tmp_path: Path, cases: list[
     assert {case.name: "fail"} == verdicts(written(tmp_path, nothing), cases)
 
 
+@pytest.mark.parametrize("name", ["io/out_8193", "interrupt/prio_three"])
+def test_what_we_warn_of_may_be_reported_while_running(
+    tmp_path: Path, own_cases: list[Case], name: str
+) -> None:
+    """A controller that says nothing when it loads the file is not wrong."""
+    (case,) = selected(own_cases, [name])
+    silent = written(tmp_path, entry(case, findings=[]))
+    assert {name: "skipped"} == verdicts(silent, [case])
+
+
+def test_a_syntax_error_may_be_reported_on_any_line(tmp_path: Path, own_cases: list[Case]) -> None:
+    """No rule says where a parser notices that a block is not closed."""
+    (case,) = selected(own_cases, ["spline/endspline_missing"])
+    told = entry(case, findings=[{"file": case.main, "line": 5}])
+    assert {case.name: "pass"} == verdicts(written(tmp_path, told), [case])
+    assert {case.name: "fail"} == verdicts(written(tmp_path, entry(case, findings=[])), [case])
+
+
 def test_unconfirmed_rules_are_answered(tmp_path: Path, cases: list[Case]) -> None:
     """A recording says for each open rule which cases bear it out and which contradict it."""
     (case,) = selected(cases, ["control/for_end_once"])
@@ -125,6 +143,16 @@ def test_changed_and_unknown_cases_are_reported(tmp_path: Path, cases: list[Case
         ('{"format": "krl-recording/1"}', "controller"),
         ('{"format": "krl-recording/1", "controller": {"name": "x"}, "cycle": 0}', "cycle"),
         ('{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": [{}]}', "case 1"),
+        (
+            '{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": '
+            '[{"case": "a", "digest": "", "events": [{"t": Infinity, "kind": "out"}]}]}',
+            "case a: inf is no finite number",
+        ),
+        (
+            '{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": '
+            '[{"case": "a", "digest": "", "ending": "done"}]}',
+            "case a: the ending is end, fault, halt, running or empty, not 'done'",
+        ),
         (
             '{"format": "krl-recording/1", "controller": {"name": "x"}, "cases": '
             '[{"case": "a", "digest": "", "events": [{"kind": "outs", "at": "a.src:1"}]}]}',

@@ -16,7 +16,7 @@ from interp.port.requests import At
 from interp.values.faults import Fault
 
 #: Faults for which no known message fits, with texts of our own.
-_OWN: Final = {
+OWN_FAULTS: Final = {
     "interrupt_number": ("an interrupt cannot have this number", "INT-02"),
     "interrupt_unknown": ("there is no interrupt of this number", "INT-07"),
     "interrupt_count": ("too many interrupts are declared or active", "INT-03"),
@@ -47,7 +47,7 @@ def message_fault(number: int) -> Fault:
 
 def own_fault(slug: str) -> Fault:
     """Return a fault of the controller for which no message number is known."""
-    text, rule = _OWN[slug]
+    text, rule = OWN_FAULTS[slug]
     return Fault(slug, text, rules=(rule,))
 
 

@@ -1,11 +1,13 @@
 """Expectations about traces and findings are met exactly when they should be."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from conformance.evaluation.evaluator import evaluate
 from conformance.evaluation.observation import Event, Finding, Observation
+from conformance.evaluation.verdicts import verdict_of
 from conformance.suite.case import Case
 from conformance.suite.expectations import read_expectation
 from grammar.syntax.source import Source
@@ -166,8 +168,50 @@ def test_program_has_to_end_by_itself() -> None:
 
 def test_fault_of_the_submit_program_does_not_end_the_robots() -> None:
     """The program goes on, and that is right."""
-    there = Event(0, "submit", "fault", "a.src", 3, {"slug": "submit_motion", "number": None})
-    assert ["met"] == states(case("fault submit_motion"), there)
+    there = Event(0, "submit", "fault", "a.sub", 3, {"slug": "submit_motion", "number": None})
+    expected = read_expectation("fault submit_motion", "a.sub", 3)
+    assert ["met"] == states(replace(case("runs 1"), expectations=(expected,)), there)
+
+
+@pytest.mark.parametrize(
+    ("texts", "events"),
+    [
+        (["runs 1", "fault overflow [ARI-12]"], [event("line")]),
+        (
+            ["runs 1", "out 2 TRUE [ADV-07]"],
+            [event("line"), event("out", number=2, value=True), event("out", number=2, line=4)],
+        ),
+    ],
+)
+def test_what_follows_from_an_expectation_is_as_sure(texts: list[str], events: list[Event]) -> None:
+    """An ending, or that an output changes only so, fails no case if its clause may not."""
+    asked, seen = case(*texts), Observation(events=tuple(events), ending="end")
+    derived = [one for one in evaluate(asked, seen) if one.text not in texts]
+    assert ["ADV-07" if len(events) > 1 else "ARI-12"] == [one.basis for one in derived[:1]]
+    assert not derived[0].is_sure
+    assert "fail" != verdict_of([one for one in evaluate(asked, seen) if one.basis])[0]
+
+
+def test_an_empty_recording_shows_nothing() -> None:
+    """What does not happen is shown by a run only: events, or an end without watched lines."""
+    asked = case("never", "message 7 never")
+    kinds = frozenset({"line", "message"})
+    line = event("line", line=4)
+    empty = Observation(watched=kinds, ending="end", is_exact=False)
+    assert "skipped" == verdict_of(evaluate(asked, empty))[0]
+    assert "pass" == verdict_of(evaluate(asked, replace(empty, events=(line,))))[0]
+    messages = replace(empty, watched=frozenset({"message"}))
+    assert "pass" == verdict_of(evaluate(case("message 7 never"), messages))[0]
+    unended = replace(messages, ending="")
+    assert "skipped" == verdict_of(evaluate(case("message 7 never"), unended))[0]
+
+
+def test_what_does_not_happen_is_no_pass_where_what_happens_is_open() -> None:
+    """Without the path of a motion it is not enough that nothing was reported."""
+    asked = case("message 3171 never", "axes 0 0 0 0 0 0")
+    watched = frozenset({"line", "message"})
+    seen = Observation(events=(event("line"),), ending="end", is_exact=False, watched=watched)
+    assert "skipped" == verdict_of(evaluate(asked, seen))[0]
 
 
 def test_path_needs_a_robot() -> None:
