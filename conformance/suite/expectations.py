@@ -8,7 +8,7 @@ whether it is met.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final, Literal, cast
@@ -182,7 +182,7 @@ def expected_ending(
 
     A fault of a submit program does not end that of the robot.
     """
-    causes = {
+    causes: Mapping[str, Callable[[Expectation], bool]] = {
         "fault": lambda one: one.kind == "fault" and not one.file.lower().endswith(".sub"),
         "running": lambda one: one.kind == "runs" and one.arguments == ("on",),
         "halt": lambda one: one.kind == "halt",
