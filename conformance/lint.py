@@ -189,7 +189,7 @@ def _clause_defects(case: Case) -> Iterator[str]:
             is_meant = one.text.startswith(begins)
             if is_meant and not any(word in clause.statement for word in words.split()):
                 yield f"line {one.line}: {clause.id} says nothing of {one.text!r}"
-        if one.when and (why := _untimed(clause, one.when)):
+        if one.when and (why := _untimed(clause, one, one.when)):
             yield f"line {one.line}: {why} for {one.text!r}"
         number = _message_of(case, one)
         rests_on = [clause.statement] if case.phase == "run" else _statements_of(case)
@@ -197,13 +197,16 @@ def _clause_defects(case: Case) -> Iterator[str]:
             yield f"line {one.line}: {clause.id} does not say that {number} is the message"
 
 
-def _untimed(clause: Rule | Clause, when: When) -> str:
+def _untimed(clause: Rule | Clause, one: Expectation, when: When) -> str:
     """Return why a clause cannot give the time of a hard expectation; "" if it may."""
     topic = clause.id[:3]
     if topic == "SUB" and when.relation != "after" and not (when.last or when.first).event:
         return "a submit program has no period [SUB-03]"
     if topic == "INT" and when.relation in ("at", "between"):
         return "the latency of an interrupt is not known [INT-18]"
+    is_soon = when.relation == "at" or (when.relation == "before" and when.first.event == "start")
+    if one.kind == "planned" and is_soon:
+        return "how soon a motion is planned depends on the computing power [ADV-03]"
     if topic in _TIMELESS and "advance" not in clause.statement and when.relation != "after":
         return f"{clause.id} gives no time"
     return ""

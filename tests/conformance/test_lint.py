@@ -84,6 +84,12 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
             "the latency of an interrupt is not known",
         ),
         (
+            "advance/good.src",
+            GOOD,
+            GOOD.replace("CTL-01", "ADV-01").replace("runs 1", "planned at start 2"),
+            "depends on the computing power",
+        ),
+        (
             "types/good.src",
             GOOD,
             GOOD.replace("CTL-01", "TYP-09").replace("runs 1", "line at 0.5"),

@@ -91,7 +91,7 @@ def test_own_codes_are_any_complaint_about_the_line(tmp_path: Path, cases: list[
     assert {case.name: "fail"} == verdicts(written(tmp_path, nothing), cases)
 
 
-@pytest.mark.parametrize("name", ["io/out_8193", "interrupt/prio_three"])
+@pytest.mark.parametrize("name", ["io/out_8193", "interrupt/prio_three", "trigger/call_prio_129"])
 def test_what_we_warn_of_may_be_reported_while_running(
     tmp_path: Path, own_cases: list[Case], name: str
 ) -> None:
