@@ -373,6 +373,10 @@ BODY_PART = 20
 READ_TOGETHER_SHARE = 0.8
 #: Different signs and blanks in quotes from which on any character may be there. Not measured.
 QUOTED_SIGNS = 2
+#: Different texts in quotes from which on their common beginning is part of the token; how unlikely
+#: it is that digits would be missing by chance. Not measured.
+ALIKE_TEXTS = 3
+UNLIKELY = 0.01
 #: Kinds of list from which on a first item may have a form of its own. Not measured.
 MANY_LISTS = 8
 #: Characters of the signs ahead that distinguish one in a line from others. Bound on memory.

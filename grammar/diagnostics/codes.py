@@ -38,10 +38,14 @@ class DiagnosticCode:
 def by_slug() -> Mapping[str, DiagnosticCode]:
     """Return all codes by their slugs, in the order of the table."""
     table = resources.files(__package__).joinpath("codes.tsv").read_text(encoding="utf-8")
-    found = {}
-    for row in table.splitlines()[1:]:
+    found: dict[str, DiagnosticCode] = {}
+    severities: Mapping[str, Severity] = {word: word for word in get_args(Severity)}
+    for number, row in enumerate(table.splitlines()[1:], 2):
         name, slug, severity, rules, title, explanation = row.split("\t")
-        (known,) = (word for word in get_args(Severity) if word == severity)
+        if severity not in severities or slug in found:
+            wrong = f"{slug} is there twice" if slug in found else f"no severity is {severity}"
+            raise ValueError(f"codes.tsv:{number}: {wrong}")
+        known = severities[severity]
         found[slug] = DiagnosticCode(name, slug, known, title, explanation, tuple(rules.split()))
     return found
 

@@ -7,10 +7,12 @@ import unicodedata
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import chain, count, pairwise
+from math import comb
+from os.path import commonprefix
 from statistics import mean
 
 from grammar.parser.lexer import ERROR, Lexer
-from recovery.tuning import INFERRED_SHARE, QUOTED_SIGNS
+from recovery.tuning import ALIKE_TEXTS, INFERRED_SHARE, QUOTED_SIGNS, UNLIKELY
 
 
 def unknown_token(
@@ -84,14 +86,24 @@ def _inside(line: str, quote: str) -> list[str] | None:
 
 
 def _content(texts: Sequence[str], quote: str) -> str:
-    """Return what a lexer rule writes for the characters of texts between quotes."""
-    characters = sorted(set("".join(texts)))
-    signs = [c for c in characters if not (c.isascii() and c.isalnum())]
+    """Return what a lexer rule writes for texts between quotes.
+
+    Several texts that begin alike have that beginning. Digits that are unlikely to be missing by
+    chance are left out: a binary number has no 2.
+    """
+    several = set(texts)
+    begun = commonprefix([*several]) if len(several) >= ALIKE_TEXTS else ""
+    characters = "".join(text.removeprefix(begun) for text in texts)
+    signs = sorted({c for c in characters if not (c.isascii() and c.isalnum())})
     if len(signs) > QUOTED_SIGNS:
         return f"~[{_escaped(quote, ']-')}\\r\\n]*"
-    tests = {"A-Za-z": str.isalpha, "0-9": str.isdigit}
-    classes = [name for name, test in tests.items() if any(map(test, characters))]
-    return f"[{''.join(classes)}{_escaped(''.join(signs), ']-')}]{'*' if '' in texts else '+'}"
+    digits = [c for c in characters if "0" <= c <= "9"]
+    some = "".join(sorted(set(digits)))
+    is_part = comb(10, len(some)) * (len(some) / 10) ** len(digits) < UNLIKELY
+    letters = "A-Za-z" if any(map(str.isalpha, characters)) else ""
+    chosen = f"{letters}{some if is_part else '0-9' if digits else ''}"
+    any_ = f"[{chosen}{_escaped(''.join(signs), ']-')}]{'*' if begun in several else '+'}"
+    return " ".join(filter(None, (begun and "'{}'".format(_escaped(begun, "'")), any_)))
 
 
 def _escaped(text: str, special: str) -> str:

@@ -121,8 +121,8 @@ def _outcome(make: Callable[[Sink], Executor]) -> Any:
     if isinstance(ended, Fail):
         assert isinstance(ended.fault, Fault), ended.fault
         return f"!{ended.fault.slug}"
-    value = next(one.value for one in reversed(seen.events_of("assign")) if one.path == ("R",))
-    return to_json(value)
+    values = [one.value for one in seen.events_of("assign") if one.path == ("R",)]
+    return to_json(values[-1]) if values else f"no value: {ended}"
 
 
 def test_every_operator_and_function_has_its_rules() -> None:
