@@ -6,9 +6,8 @@ import re
 import unicodedata
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from itertools import chain, count, pairwise
+from itertools import chain, count, pairwise, takewhile
 from math import comb
-from os.path import commonprefix
 from statistics import mean
 
 from grammar.parser.lexer import ERROR, Lexer
@@ -89,10 +88,10 @@ def _content(texts: Sequence[str], quote: str) -> str:
     """Return what a lexer rule writes for texts between quotes.
 
     Several texts that begin alike have that beginning. Digits that are unlikely to be missing by
-    chance are left out: a binary number has no 2.
+    chance are left out: a binary number has no 2. Signs and blanks are last only where one was.
     """
     several = set(texts)
-    begun = commonprefix([*several]) if len(several) >= ALIKE_TEXTS else ""
+    begun = _common_start(several) if len(several) >= ALIKE_TEXTS else ""
     characters = "".join(text.removeprefix(begun) for text in texts)
     signs = sorted({c for c in characters if not (c.isascii() and c.isalnum())})
     if len(signs) > QUOTED_SIGNS:
@@ -102,8 +101,20 @@ def _content(texts: Sequence[str], quote: str) -> str:
     is_part = comb(10, len(some)) * (len(some) / 10) ** len(digits) < UNLIKELY
     letters = "A-Za-z" if any(map(str.isalpha, characters)) else ""
     chosen = f"{letters}{some if is_part else '0-9' if digits else ''}"
-    any_ = f"[{chosen}{_escaped(''.join(signs), ']-')}]{'*' if begun in several else '+'}"
-    return " ".join(filter(None, (begun and "'{}'".format(_escaped(begun, "'")), any_)))
+    written = [begun and "'{}'".format(_escaped(begun, "'"))]
+    with_signs = f"{chosen}{_escaped(''.join(signs), ']-')}"
+    if signs and chosen and all(text[-1:].isalnum() for text in several - {begun}):
+        last = f"[{with_signs}]* [{chosen}]"
+        written.append(f"({last})?" if begun in several else last)
+    else:
+        written.append(f"[{with_signs}]{'*' if begun in several else '+'}")
+    return " ".join(filter(None, written))
+
+
+def _common_start(texts: Collection[str]) -> str:
+    """Return the longest text with which all texts begin."""
+    both = zip(min(texts), max(texts), strict=False)
+    return "".join(one for one, other in takewhile(lambda pair: pair[0] == pair[1], both))
 
 
 def _escaped(text: str, special: str) -> str:

@@ -20,10 +20,14 @@ from recovery.negatives.negatives import NegativeSet
         (["GO @A TO @B"], "COMMERCIAL_AT : '@' ;", ("@",)),
         (["X && Y"], "AMPERSAND_AMPERSAND : '&&' ;", ("&&",)),
         (["X && Y", "&X"], "AMPERSAND : '&' ;", ("&",)),  # it is a sign of its own, too
-        (["X := 'a b'", "Y('C1')"], "APOSTROPHE_TEXT : '\\'' [A-Za-z0-9 ]+ '\\'' ;", ("'a b'",)),
+        (
+            ["X := 'a b'", "Y('C1')"],
+            "APOSTROPHE_TEXT : '\\'' [A-Za-z0-9 ]* [A-Za-z0-9] '\\'' ;",
+            ("'a b'",),
+        ),
         (
             ["X := 'B 110'", "X := 'B0110'", "X := 'B101'"],
-            "APOSTROPHE_TEXT : '\\'' 'B' [01 ]+ '\\'' ;",
+            "APOSTROPHE_TEXT : '\\'' 'B' [01 ]* [01] '\\'' ;",
             ("'B 110'",),
         ),
         (["X := 'n1'", "X := 'n10'"], "APOSTROPHE_TEXT : '\\'' [A-Za-z0-9]+ '\\'' ;", ("'n1'",)),
