@@ -132,7 +132,7 @@ def _alone(out: Path) -> Iterator[None]:
 def _run(steps: list[_Step], folder: Path, history: Path, minutes: float, memory: int) -> int:
     """Perform the steps of a run and report; return the exit status."""
     from reports.nightly.history import last_times, read_history
-    from reports.nightly.step_status import has_ended, not_run
+    from reports.nightly.step_status import has_ended, incomplete
 
     with as_input_errors(OSError):
         folder.mkdir(exist_ok=True)
@@ -154,7 +154,7 @@ def _run(steps: list[_Step], folder: Path, history: Path, minutes: float, memory
     except Exception as error:
         _write_breakdown(f"failed: {type(error).__name__}: {error}", went, folder)
         raise
-    return FINDINGS if failed or not_run(went) else FINE
+    return FINDINGS if failed or incomplete(went) else FINE
 
 
 def _reported(
@@ -174,6 +174,7 @@ def _reported(
     from reports.nightly.nightly_page import write_nightly_page
     from reports.nightly.nightly_store import bound_store, write_entry_page
     from reports.nightly.nightly_summary import nightly_summary
+    from reports.nightly.step_status import incomplete
     from support.files.atomic_write import write_atomic
 
     out, name = folder.parent, folder.name
@@ -197,6 +198,8 @@ def _reported(
     write_atomic(folder / "summary.md", nightly_summary({**run, "changes": reported}))
     for one in failed:
         typer.echo(one_line(f"failed: {one['what']}"))
+    if left := incomplete(went):
+        typer.echo(one_line(left))
     for line in reported or ["nothing changed since the last nightly run"]:
         typer.echo(one_line(line))
     typer.echo(one_line(f"page: {page}"))
@@ -274,7 +277,7 @@ def _performed(
     A step that is done already takes no time. One that failed is tried once more, and is flaky if
     it succeeds then. Failed cases are repeated in a step of their own. ``times`` are those of the
     steps in earlier runs (`reports.nightly.history.last_times`): a step that would not end in the
-    time that is left is not begun.
+    time that is left is not begun, and one that is cut off before it ended then lacked the time.
     """
     from reports.nightly.nightly_failures import AGAIN, failed_cases
     from reports.nightly.step_status import CUT_OFF, FAILED, FLAKY, NOT_RUN
@@ -288,12 +291,12 @@ def _performed(
         share = max(60 * minutes * step.share, 1)
         left = 60 * minutes - (began - begun)
         took, when = times.get(step.name, (share / 10, ""))
+        before = f"; it took {took / 60:.1f} minutes on {when}" if when else ""
         record = _record(folder, step.name)
         if target.is_file() and not (record or {}).get("not_run"):
             damaged = f"{FAILED}{target.name} there is damaged"
             yield step, damaged if record is None else "ok", 0.0
         elif left < min(took, share):
-            before = f"; it took {took / 60:.1f} minutes on {when}" if when else ""
             yield step, f"{NOT_RUN}: no time left{before}", 0.0
         else:
             most = min(share, left)
@@ -304,8 +307,8 @@ def _performed(
             if how.startswith(FAILED):
                 second = _attempt(step, target, most, memory)
                 how = how if second.startswith(FAILED) else f"{FLAKY}{how}; then {second}"
-            if how.startswith(CUT_OFF) and left < share:
-                how = f"{NOT_RUN} to its end: no time left, {how}"
+            if how.startswith(CUT_OFF) and most < max(share, took):
+                how = f"{NOT_RUN} to its end: too little time, {how}{before}"
             ended = time.monotonic()
             _say(ended - begun, f"{step.name}: {how}, {(ended - began) / 60:.1f} min")
             yield step, how, ended - began

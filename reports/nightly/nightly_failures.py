@@ -13,7 +13,7 @@ from typing import NotRequired, TypedDict
 from urllib.parse import urlencode
 
 from reports.nightly.history import ON_MUJOCO, bench_figures, vanished, worse_figures
-from reports.nightly.step_status import has_ended, not_run
+from reports.nightly.step_status import has_failed, incomplete
 from reports.rendering.number_format import clip, counted
 from reports.rendering.record_fields import Record, nested, records, text, texts
 from reports.rendering.sanitizing import shown
@@ -65,15 +65,14 @@ def failures(
 
 def headline(record: Record) -> str:
     """Return the outcome of a run in one line, from its record; "" if it is good."""
-    found, left = records(record, "failures"), not_run(nested(record, "steps"))
-    told = []
+    found = records(record, "failures")
+    told = [left] if (left := incomplete(nested(record, "steps"))) else []
     if found:
         total = sum(max(1, len(nested(one, "cases"))) for one in found)
         kinds = f" of {counted(len(found), 'kind')}" if total > len(found) else ""
         first = clip(text(found[0], "what"), _LONGEST_FIRST)
-        told.append(f"{counted(total, 'failure')}{kinds}{', first' * (len(found) > 1)}: {first}")
-    if left:
-        told.append(f"incomplete: {counted(len(left), 'step')} not run")
+        is_first = ", first" if len(found) > 1 else ""
+        told.insert(0, f"{counted(total, 'failure')}{kinds}{is_first}: {first}")
     return "; ".join(told)
 
 
@@ -86,10 +85,9 @@ def _vanished(step: str, made: Mapping[str, Record], before: Record) -> Iterator
 
 
 def _steps(steps: Mapping[str, Record]) -> Iterator[Failure]:
-    left = not_run(steps)
     for name, step in steps.items():
         status = text(step, "status")
-        if not has_ended(status) and name not in left:
+        if has_failed(status):
             yield Failure(what=f"step {name}: {status}", page="", command="")
 
 

@@ -11,6 +11,7 @@ not run …      no time was left for it, or not enough
 
 from typing import Final
 
+from reports.rendering.number_format import counted
 from reports.rendering.record_fields import Record, nested, text
 
 FAILED: Final = "failed: "
@@ -25,6 +26,15 @@ def has_ended(status: str) -> bool:
     return status in _ENDED
 
 
-def not_run(steps: Record) -> list[str]:
-    """Return the names of the steps that were not run; ``steps`` are their states by name."""
-    return [name for name in steps if text(nested(steps, name), "status").startswith(NOT_RUN)]
+def has_failed(status: str) -> bool:
+    """Return whether a step neither ended as it should nor lacked the time."""
+    return not has_ended(status) and not status.startswith(NOT_RUN)
+
+
+def incomplete(steps: Record) -> str:
+    """Return a sentence on the steps that were not run, "" if there are none.
+
+    ``steps`` are the states of all steps by name.
+    """
+    left = [name for name in steps if text(nested(steps, name), "status").startswith(NOT_RUN)]
+    return f"incomplete: {counted(len(left), 'step')} not run: {', '.join(left)}" if left else ""

@@ -15,6 +15,7 @@ from krl.cli import main
 from krl.commands import nightly
 
 DATE = "2026-01-02"
+_LACKED = "not run to its end: too little time, cut off after"
 _ON = {"executor": "vm", "robot": "none", "reason": "why"}
 
 
@@ -316,19 +317,35 @@ def test_a_step_without_time_is_not_run(
     } == steps_of(tmp_path)
     assert 1 == len(asked)
     summary = (tmp_path / DATE / "summary.md").read_text(encoding="utf-8")
-    assert "incomplete: 2 steps not run" in summary
+    told = "incomplete: 2 steps not run: recover, growth"
+    assert (told, True) == (out[0], told in summary)
 
 
-def test_a_step_that_got_less_than_its_share_did_not_fail(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("begun", "took", "told"),
+    [
+        (3300.0, 0.0, f"{_LACKED} 5 minutes"),
+        (0.0, 600.0, f"{_LACKED} 9 minutes; it took 10.0 minutes on 1"),
+        (0.0, 60.0, "cut off after 9 minutes"),
+    ],
+)
+def test_a_step_that_lacked_time_did_not_fail(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    begun: float,
+    took: float,
+    told: str,
 ) -> None:
-    """It was cut off because no time was left."""
+    """It was cut off before its share was over, or before it ended the last time."""
+    steps = {"growth": {"status": "ok", "seconds": took}}
+    (tmp_path / "h.jsonl").write_text(json.dumps({"date": "1", "steps": steps}), encoding="utf-8")
     _step(monkeypatch, (None, ""))
-    late = iter([0.0, *[3300.0] * 100])
+    late = iter([0.0, *[begun] * 100])
     monkeypatch.setattr(time, "monotonic", lambda: next(late))
-    assert 1 == run(tmp_path, capsys, "growth")[0]
-    told = "not run to its end: no time left, cut off after 5 minutes"
+    status, out = run(tmp_path, capsys, "growth")
     assert {"growth": told} == steps_of(tmp_path)
+    assert (1, told.startswith("cut off")) == (status, out[0].startswith("failed: step growth"))
 
 
 def test_what_was_cut_off_is_told_and_done_again(

@@ -151,7 +151,7 @@ def test_a_run_without_enough_time_is_incomplete(tmp_path: Path) -> None:
         nightly_summary(run),
         headline(run),
     ):
-        assert "incomplete: 1 step not run" in text
+        assert "incomplete: 1 step not run: fuzz" in text
 
 
 def test_the_tile_of_runs_counts_every_verdict(tmp_path: Path) -> None:
