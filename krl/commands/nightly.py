@@ -119,12 +119,10 @@ def _alone(out: Path) -> Iterator[None]:
         try:
             lock.execute(f"PRAGMA user_version = {os.getpid()}")
             lock.execute("BEGIN IMMEDIATE")
-        except sqlite3.OperationalError as error:
+        except sqlite3.Error as error:
             with suppress(sqlite3.Error):
                 (process,) = lock.execute("PRAGMA user_version").fetchone()
                 raise InputError(f"{file}: process {process} is a nightly run there") from None
-            raise InputError(f"{file}: {error}") from None
-        except sqlite3.DatabaseError as error:
             raise InputError(f"{file}: {error}") from None
         yield
 

@@ -295,8 +295,11 @@ def test_two_runs_do_not_write_into_one_folder(
 
 def test_what_is_no_lock_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A file of that name may be somebody's."""
-    (tmp_path / "nightly.lock").write_bytes(b"mine" * 1000)
-    assert (2, []) == run(tmp_path, capsys, "fuzz")
+    file = tmp_path / "nightly.lock"
+    file.write_bytes(b"mine" * 1000)
+    options = ["--out", str(tmp_path), "--history", str(tmp_path / "h.jsonl")]
+    assert 2 == main(["nightly", *options, "--only", "fuzz"])
+    assert f"krl: {file}: file is not a database\n" == capsys.readouterr().err
 
 
 def test_a_step_without_time_is_not_run(

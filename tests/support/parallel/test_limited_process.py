@@ -94,24 +94,24 @@ def test_memory_has_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     ("ending", "status"),
     [("SIGTERM", 128 + signal.SIGTERM), ("SIGKILL", -signal.SIGKILL)],
 )
-def test_the_end_of_who_runs_it_ends_all(ending: str, status: int) -> None:
+def test_the_end_of_who_runs_it_ends_all(tmp_path: Path, ending: str, status: int) -> None:
     """Who runs a command and is told to end, or killed, leaves neither it nor what it has started.
 
     All of them hold one end of a pipe, whose other end is read until nobody does. The signal comes
     as early as can be: the command itself sends it to who runs it.
     """
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
     sleeper = "import time; time.sleep(1e6)"
     step = (
-        "import os, signal, subprocess, sys;"
-        f" subprocess.Popen([sys.executable, '-c', {sleeper!r}]);"
+        f"import os, signal, subprocess, sys; held = open({str(pipe)!r}, 'w');"
+        f" subprocess.Popen([sys.executable, '-c', {sleeper!r}], stdout=held);"
         f" os.kill(os.getppid(), signal.{ending}); {sleeper}"
     )
     run = (
         "import sys; from support.parallel.limited_process import run_limited;"
         f" run_limited([sys.executable, '-c', {step!r}], 1e6, {MUCH}, print)"
     )
-    read, write = os.pipe()
-    with subprocess.Popen(python(run), stdin=write) as process, os.fdopen(read, "rb") as stream:
-        os.close(write)
+    with subprocess.Popen(python(run)) as process, pipe.open("rb") as stream:
         assert b"" == stream.read()
         assert status == process.wait()
