@@ -332,13 +332,16 @@ def _attempt(step: _Step, target: Path, most: float, memory: int) -> str:
 
 def _how_far(target: Path) -> str:
     """Return which cases were done and running when a step was cut off, if its record has that."""
+    from reports.rendering.record_fields import count, texts
+
     record = _record(target.parent, target.stem) or {}
-    running = ", ".join(map(str, record.get("running") or ()))
-    left = len(record.get("not_run") or ())
+    left, running = len(texts(record, "not_run")), ", ".join(texts(record, "running"))
     if not left:
         return ""
-    while_ = f", while {running} ran" if running else ""
-    return f"{while_}; {left:,} of {record.get('cases_total', 0) + left:,} cases are not done"
+    total = count(record, "cases_total") + left
+    return (
+        f"{f', while {running} ran' if running else ''}; {left:,} of {total:,} cases are not done"
+    )
 
 
 def _say(seconds: float, words: str) -> None:
