@@ -278,7 +278,7 @@ def _performed(
     time that is left is not begun, and one that is cut off before it ended then lacked the time.
     """
     from reports.nightly.nightly_failures import AGAIN, failed_cases
-    from reports.nightly.step_status import CUT_OFF, FAILED, FLAKY, NOT_RUN
+    from reports.nightly.step_status import CUT_OFF, FAILED, FLAKY, NOT_RUN, has_ended
 
     begun = time.monotonic()
     left_to_do = deque(enumerate(steps, 1))
@@ -304,7 +304,7 @@ def _performed(
             how = _attempt(step, target, most, memory)
             if how.startswith(FAILED):
                 second = _attempt(step, target, most, memory)
-                how = how if second.startswith(FAILED) else f"{FLAKY}{how}; then {second}"
+                how = f"{FLAKY}{how}; then {second}" if has_ended(second) else how
             if how.startswith(CUT_OFF) and most < max(share, took):
                 how = f"{NOT_RUN} to its end: too little time, {how}{before}"
             ended = time.monotonic()

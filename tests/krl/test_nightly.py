@@ -162,6 +162,7 @@ def _step(monkeypatch: pytest.MonkeyPatch, *outcomes: tuple[int | None, str]) ->
         ([(0, "")], "ok"),
         ([(2, "no such thing"), (0, "")], "flaky: failed: no such thing; then ok"),
         ([(-9, "krl: running cases: 160 of 275"), (2, "")], "failed: killed by signal 9"),
+        ([(2, "no such thing"), (None, "")], "failed: no such thing"),
         ([(None, "far")], "cut off after 18 minutes"),
     ],
 )
