@@ -34,8 +34,8 @@ from support.parallel.workers import WorkersError
 _SHARE: Final = 8
 #: The limits of processor time and of wall-clock time for a case on one executor and robot, in s.
 #: All cases need at most a few seconds.
-_COMPUTING: Final = 20.0
-_LASTING: Final = 120.0
+MOST_COMPUTING: Final = 20.0
+MOST_LASTING: Final = 120.0
 
 Observe = Callable[[Case, Setup], Observation]
 
@@ -78,7 +78,7 @@ def run_case(
     known: KnownFailures = KnownFailures(),  # noqa: B008 - frozen
     see: Observe = observe,
     absent: Callable[[Setup], str] = missing,
-    most: float = _COMPUTING,
+    most: float = MOST_COMPUTING,
 ) -> CaseResult:
     """Run one case. ``see`` observes it, ``absent`` says why a setup is not available.
 
@@ -155,11 +155,11 @@ def _timer(
 
 
 def observed_within(
-    case: Case, setup: Setup, most: float = _COMPUTING, see: Observe = observe
+    case: Case, setup: Setup, most: float = MOST_COMPUTING, see: Observe = observe
 ) -> Observation:
     """Return what was observed of a case in ``most`` s of computing; an exception is a crash."""
     try:
-        with _limited(most, _LASTING):
+        with _limited(most, MOST_LASTING):
             return see(case, setup)
     except _TimeOver as error:
         reason = f"it takes more than {error}"
@@ -217,7 +217,7 @@ def repeated(run: Callable[[], CaseResult]) -> CaseResult:
     A case that does not end is not run again.
     """
     first = run()
-    if first.verdict != "fail" or any(one.seconds > _COMPUTING for one in first.results):
+    if first.verdict != "fail" or any(one.seconds > MOST_COMPUTING for one in first.results):
         return first
     results = [
         replace(one, reason=f"flaky, {other.verdict} when run again: {one.reason}")

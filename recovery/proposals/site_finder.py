@@ -258,6 +258,8 @@ class EditSiteFinder:
             alone = self.profile.is_hub(rule) and len(elements) == 1
             if alone or (place[-1] > 1 and self.profile.is_hub(before.name)):
                 width += UNLIKELY_COST  # behind one of many statements, not in it
+        if self._is_new_word(words[-1]) and not self._is_new_word(words[0]):
+            width += 1  # of two ways to cut the line, the word is rather ahead of its operand
         return EditSite("insert", rule, place, tuple(words), width + SITE_COST)
 
     def _is_behind_line_end(self, rule: str, place: Address) -> bool:

@@ -167,7 +167,7 @@ def test_executor_that_waits_for_ever_is_a_failed_case(
     make: MakeCase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It needs no processor for that."""
-    monkeypatch.setattr(runner, "_LASTING", 0.05)
+    monkeypatch.setattr(runner, "MOST_LASTING", 0.05)
 
     def see(case: Case, setup: Setup) -> Observation:
         sleep(600)
@@ -181,7 +181,7 @@ def test_case_that_does_not_end_is_tried_once(
     make: MakeCase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Neither on the executors after that, nor once more."""
-    monkeypatch.setattr(runner, "_COMPUTING", 0.05)
+    monkeypatch.setattr(runner, "MOST_COMPUTING", 0.05)
     begun: list[str] = []
 
     def see(_case: Case, setup: Setup) -> Observation:

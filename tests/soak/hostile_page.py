@@ -19,6 +19,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from conformance import runner
 from support.files import archives, untrusted
 from tests.soak.entries import ENTRIES
 from tests.soak.pieces import KINDS
@@ -57,7 +58,9 @@ _KILLED = """\
 `make killed` kills surveys (30 times), growths (8), nightly runs (5) and acceptances of a
 construct (7) at moments drawn from a seed, and runs them again. What was finished is not done
 again, records and pages are whole or not there, the last record is that of an undisturbed run, and
-ledger, grammar and parser are all those before an acceptance or all those after.
+ledger, grammar and parser are all those before an acceptance or all those after. The steps of a
+nightly run that is killed end with it, except on Windows. A second run in the same folder is
+refused as long as the first one lives.
 """
 
 
@@ -205,6 +208,8 @@ def _limits() -> Iterator[tuple[str, str]]:
     yield "nesting of JSON and TOML", "what Python reads without a deeper stack, some hundreds"
     yield "a run", "`--max-time` of virtual time, and a budget of statements that pass none"
     yield "a trace", "`--max-trace`; the run goes on"
+    limits = f"{runner.MOST_COMPUTING:.0f} s of computing, {runner.MOST_LASTING:.0f} s"
+    yield "a conformance case, on one executor and robot", f"{limits}; not on Windows"
     yield "a step of a nightly run", "its share of `--minutes`"
 
 
