@@ -1,4 +1,4 @@
-"""The generator of ``docs/semantics.md``, the reference of all rules.
+"""The generator of ``docs/semantics.md``, the reference of all rules, and of the table of tiers.
 
 Its input is the registry (`conformance.suite.registry`) and the codes of findings
 (`grammar.diagnostics.codes`). Run ``python -m conformance.suite.semantics`` after a change to
@@ -15,6 +15,8 @@ from grammar.diagnostics.codes import by_slug
 from grammar.semantics.rules import is_confirmed
 
 PAGE = Path(__file__).parents[2] / "docs" / "semantics.md"
+#: The tier of each rule, for the packages below this one (`grammar.semantics.rules`).
+TIERS = Path(__file__).parents[2] / "grammar" / "system" / "rules.tsv"
 
 #: What implements a rule, and its name on the page; codes of findings are added to it.
 _TODAY = {
@@ -164,5 +166,11 @@ def _row(rule: Rule, codes: tuple[str, ...]) -> str:
     return f"| {rule.id} | {rule.tier} | {statement} | {'; '.join(words)} | {source} |"
 
 
+def tier_table() -> str:
+    """Return the text of `TIERS`."""
+    return "rule\ttier\n" + "".join(f"{one.id}\t{one.tier}\n" for one in registry().values())
+
+
 if __name__ == "__main__":
     PAGE.write_text(page(), encoding="utf-8", newline="\n")
+    TIERS.write_text(tier_table(), encoding="utf-8", newline="\n")
