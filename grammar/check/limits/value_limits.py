@@ -1,4 +1,4 @@
-"""Numbers and values with limits: interrupts, triggers, cyclic flags.
+"""Numbers and values with limits: interrupts, triggers, pulses, cyclic flags.
 
 Only values that are known before a program runs are checked.
 """
@@ -16,6 +16,8 @@ from grammar.semantics.symbols import Access
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
 
+#: The shortest and the longest pulse in seconds, a little more than 0.1 as a REAL [IOT-07.a].
+_PULSE = (0.1, 3.0)
 #: Milliseconds or millimetres: how far a trigger can be shifted [TRG-03, TRG-04].
 _FARTHEST = 10_000_000
 _STOP_MESSAGE = "$STOPMESS"
@@ -37,6 +39,9 @@ def check(context: Context) -> Iterator[Diagnostic]:
                 case ast.Assignment(target=ast.Subscript()) as assignment:
                     yield from _cyclical_flag(context, assignment)
         yield from _before_ptp(context, routine)
+    for call in context.typed_nodes[ast.Call] if context.routines else ():
+        if call.name.key == "PULSE" and len(call.arguments) == 3:
+            yield from _pulse(context, call.arguments[2])
 
 
 def _number(context: Context, node: ast.Expression | None) -> float | None:
@@ -76,6 +81,13 @@ def _duration(context: Context, node: ast.Expression) -> Iterator[Diagnostic]:
     if seconds is not None and seconds < 0:
         message = f"WAIT SEC of {seconds:g} seconds does not wait"
         yield context.finding("negative-wait", node, message)
+
+
+def _pulse(context: Context, node: ast.Expression | None) -> Iterator[Diagnostic]:
+    seconds, (shortest, longest) = _number(context, node), _PULSE
+    if node is not None and seconds is not None and not shortest <= seconds <= longest:
+        message = f"a pulse lasts {shortest:g} to {longest:g} seconds, and not {seconds:g}"
+        yield context.finding("pulse-duration", node, message)
 
 
 def _is_stop_message(condition: ast.Expression) -> bool:

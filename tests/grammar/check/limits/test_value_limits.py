@@ -20,6 +20,18 @@ def test_priorities() -> None:
 
 
 @pytest.mark.parametrize(
+    ("seconds", "said"),
+    [("0.1", ""), ("3", ""), ("I", ""), ("0.05", "?"), ("30", "?"), ("-1", "?")],
+)
+def test_pulses(agrees: Agrees, seconds: str, said: str) -> None:
+    """A pulse lasts 0.1 to 3 seconds, also as the action of a trigger [IOT-07]."""
+    expected = f";> KRL518{said}" if said else ""
+    pulse = f"PULSE($OUT[1], TRUE, {seconds})"
+    agrees(routine("DECL INT I", "I = 5", f"{pulse} {expected}"))
+    agrees(routine("DECL INT I", "I = 5", f"TRIGGER WHEN DISTANCE=0 DELAY=0 DO {pulse} {expected}"))
+
+
+@pytest.mark.parametrize(
     "line",
     [
         "INTERRUPT DECL 1 WHEN $IN[1] DO WORK()",
