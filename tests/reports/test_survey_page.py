@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from reports.recovery import survey_page
 from reports.recovery.survey_page import write_survey_page
 from tests.reports.page_elements import LOADING_ATTRIBUTES, Elements
 
@@ -182,3 +183,14 @@ def test_a_page_that_cannot_be_put_in_place_leaves_the_old_one(
         write_survey_page(survey_record("believable"), tmp_path)
     assert before == page.read_bytes()
     assert [path.name for path in tmp_path.iterdir()] == ["index.html"]
+
+
+def test_every_column_can_be_sorted() -> None:
+    """The button in the head of each column has a value to sort by, and no value lacks a column."""
+    folder = Path(survey_page.__file__).parents[1] / "templates"
+    section = (folder / "survey-section.html.j2").read_text(encoding="utf-8")
+    script = (folder / "survey-table.js").read_text(encoding="utf-8")
+    values = script.partition("const sortValue = {")[2].partition("};")[0]
+    assert set(re.findall(r'data-key="(\w+)"', section)) == set(
+        re.findall(r"^  (\w+):", values, re.M)
+    )
