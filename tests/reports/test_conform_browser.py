@@ -253,7 +253,8 @@ def test_the_page_of_a_bad_night_says_why(
         ],
     }
     opened(write_nightly_page(record, tmp_path), "")
-    assert "2 failures" == browser.find_element(By.CSS_SELECTOR, ".grammar .bad").text
+    told = browser.find_element(By.CSS_SELECTOR, ".grammar .bad").text
+    assert told == "2 failures, first: step recover: cut off after 9 minutes"
     found = [one.text for one in browser.find_elements(By.CSS_SELECTOR, "li.bad")]
     assert ["step recover: cut off after 9 minutes", "case a/b failed\nkrl c"] == found
     assert _is_sound(browser)
