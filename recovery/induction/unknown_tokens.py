@@ -88,11 +88,12 @@ def _content(texts: Sequence[str], quote: str) -> str:
     """Return what a lexer rule writes for texts between quotes.
 
     Several texts that begin alike have that beginning. Digits that are unlikely to be missing by
-    chance are left out: a binary number has no 2. Signs and blanks are last only where one was.
+    chance are left out: a binary number has no 2.
     """
     several = set(texts)
     begun = _common_start(several) if len(several) >= ALIKE_TEXTS else ""
-    characters = "".join(text.removeprefix(begun) for text in texts)
+    rest = [text.removeprefix(begun) for text in texts]
+    characters = "".join(rest)
     signs = sorted({c for c in characters if not (c.isascii() and c.isalnum())})
     if len(signs) > QUOTED_SIGNS:
         return f"~[{_escaped(quote, ']-')}\\r\\n]*"
@@ -102,12 +103,13 @@ def _content(texts: Sequence[str], quote: str) -> str:
     letters = "A-Za-z" if any(map(str.isalpha, characters)) else ""
     chosen = f"{letters}{some if is_part else '0-9' if digits else ''}"
     written = [begun and "'{}'".format(_escaped(begun, "'"))]
-    with_signs = f"{chosen}{_escaped(''.join(signs), ']-')}"
-    if signs and chosen and all(text[-1:].isalnum() for text in several - {begun}):
-        last = f"[{with_signs}]* [{chosen}]"
-        written.append(f"({last})?" if begun in several else last)
+    blank = _escaped("".join(signs), "]-")
+    if signs and chosen:  # no text has signs and blanks alone
+        first = f"[{blank}]* " if any(not text[:1].isalnum() for text in rest if text) else ""
+        some = f"{first}[{chosen}] [{chosen}{blank}]*"
+        written.append(f"({some})?" if "" in rest else some)
     else:
-        written.append(f"[{with_signs}]{'*' if begun in several else '+'}")
+        written.append(f"[{chosen}{blank}]{'*' if '' in rest else '+'}")
     return " ".join(filter(None, written))
 
 

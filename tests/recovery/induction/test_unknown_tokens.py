@@ -22,12 +22,12 @@ from recovery.negatives.negatives import NegativeSet
         (["X && Y", "&X"], "AMPERSAND : '&' ;", ("&",)),  # it is a sign of its own, too
         (
             ["X := 'a b'", "Y('C1')"],
-            "APOSTROPHE_TEXT : '\\'' [A-Za-z0-9 ]* [A-Za-z0-9] '\\'' ;",
+            "APOSTROPHE_TEXT : '\\'' [A-Za-z0-9] [A-Za-z0-9 ]* '\\'' ;",
             ("'a b'",),
         ),
         (
             ["X := 'B 110'", "X := 'B0110'", "X := 'B101'"],
-            "APOSTROPHE_TEXT : '\\'' 'B' [01 ]* [01] '\\'' ;",
+            "APOSTROPHE_TEXT : '\\'' 'B' [ ]* [01] [01 ]* '\\'' ;",
             ("'B 110'",),
         ),
         (["X := 'n1'", "X := 'n10'"], "APOSTROPHE_TEXT : '\\'' [A-Za-z0-9]+ '\\'' ;", ("'n1'",)),
