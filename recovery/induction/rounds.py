@@ -416,14 +416,12 @@ class Induction:
         unknown = unknown_token(lines, recognizer.lexer, self.grammar.by_name)
         if unknown is None:
             return None
-        rule, places, seen = unknown
-        added: tuple[Edit, ...] = (AddRule(self.grammar.rules[-1].name, rule),)
-        name = rule.split()[0]
-        values = OperandRules(recognizer).values
-        if values and "_TEXT" in name:
-            added += (AddAlternative(values, name),)
+        added: tuple[Edit, ...] = (AddRule(self.grammar.rules[-1].name, unknown.rule),)
+        if unknown.is_value and (values := OperandRules(recognizer).values):
+            added += (AddAlternative(values, unknown.name),)
         enough = least[0], min(INFERRED_FILES, len(self.shown.files))
-        return self._token_step(f"{seen[0]} is a token", added, places, seen, enough)
+        title = f"{unknown.seen[0]} is a token"
+        return self._token_step(title, added, unknown.files, unknown.seen, enough)
 
     def _token_step(
         self,
@@ -439,8 +437,10 @@ class Induction:
             return None
         evidence = Evidence(len(places), len(origins), len(seen), seen[:PLACES_SHOWN])
         kept, _ = self.shown.kept(self.grammar, [AcceptedStep(title, edits, evidence)], None)
+        if not kept:
+            return None
         self._corpus = self._keywords = None
-        return kept[0] if kept else None
+        return kept[0]
 
 
 def _narrower(review: EditReview, fold: InferredStep, had: Set[str]) -> Recognizer | str:

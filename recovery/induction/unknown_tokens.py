@@ -6,6 +6,7 @@ import re
 import unicodedata
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import chain, count, pairwise, takewhile
 from math import comb
 from statistics import mean
@@ -14,21 +15,35 @@ from grammar.parser.lexer import ERROR, Lexer
 from recovery.tuning import ALIKE_TEXTS, INFERRED_SHARE, QUOTED_SIGNS, UNLIKELY
 
 
+@dataclass(frozen=True, slots=True)
+class UnknownToken:
+    """A token that a lexer lacks: its name, the text of its rule, and whether it is a value.
+
+    ``files`` are the numbers of the files that have it, ``seen`` its distinct texts there.
+    """
+
+    name: str
+    rule: str
+    is_value: bool
+    files: frozenset[int]
+    seen: tuple[str, ...]
+
+
 def unknown_token(
     lines: Iterable[tuple[str, int]], lexer: Lexer, known: Collection[str]
-) -> tuple[str, frozenset[int], tuple[str, ...]] | None:
-    """Return the rule of the most frequent unknown token, its files, and its distinct texts.
+) -> UnknownToken | None:
+    """Return the most frequent unknown token of lines, ``None`` without unknown characters.
 
     Each of ``lines`` comes with the number of its file. A character that nearly all lines have in
     pairs with no operand against the outside is a quote. Other ones that are always side by side
-    are one sign. The name of the token is none of the ``known`` names. The result is ``None``
-    without unknown characters.
+    are one sign. The name of the token is none of the ``known`` names.
     """
     having: dict[str, set[int]] = defaultdict(set)
     paired: dict[str, list[bool]] = defaultdict(list)
     every = list(dict.fromkeys(lines))
+    unknown = {c for c in set("".join(line for line, _ in every)) if _is_sign(c, lexer)}
     for line, file in every:
-        for sign in _signs(line, lexer):
+        for sign in () if unknown.isdisjoint(line) else _signs(line, lexer):
             having[sign].add(file)
             for part in set(sign):
                 paired[part].append(_inside(line, part) is not None)
@@ -43,14 +58,14 @@ def unknown_token(
     best = max(quotes or having, key=lambda s: (len(having[s]), s))
     name = re.sub(r"\W", "_", "_".join(unicodedata.name(c, "sign") for c in best)).upper()
     written = "'{}'".format(_escaped(best, "'"))
+    texts: list[str] = []
     if best in quotes:
         texts = [text for line, _ in every for text in _inside(line, best) or ()]
         name, written = f"{name}_TEXT", f"{written} {_content(texts, best)} {written}"
-    else:
-        texts = []
     seen = tuple(dict.fromkeys(f"{best}{text}{best}" for text in texts)) or (best,)
     name = next(n for n in chain([name], (f"{name}_{n}" for n in count(2))) if n not in known)
-    return f"{name} : {written} ;", frozenset(having[best]), seen
+    rule = f"{name} : {written} ;"
+    return UnknownToken(name, rule, best in quotes, frozenset(having[best]), seen)
 
 
 def _signs(line: str, lexer: Lexer) -> Iterator[str]:
@@ -58,7 +73,7 @@ def _signs(line: str, lexer: Lexer) -> Iterator[str]:
     lexemes, offsets = lexer.located(line)
     found, end = "", 0
     for lexeme, start in zip(lexemes, offsets, strict=True):
-        is_sign = lexer.kinds[lexeme] == ERROR and lexeme.isprintable() and not lexeme.isalnum()
+        is_sign = _is_sign(lexeme, lexer)
         if found and not (is_sign and start == end):
             yield found
             found = ""
@@ -66,6 +81,11 @@ def _signs(line: str, lexer: Lexer) -> Iterator[str]:
         end = start + len(lexeme)
     if found:
         yield found
+
+
+def _is_sign(lexeme: str, lexer: Lexer) -> bool:
+    """Return whether a lexeme is a character that no token has, and could be a sign."""
+    return lexer.kinds[lexeme] == ERROR and lexeme.isprintable() and not lexeme.isalnum()
 
 
 def _inside(line: str, quote: str) -> list[str] | None:

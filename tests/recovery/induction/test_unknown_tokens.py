@@ -38,7 +38,8 @@ def test_signs_and_quotes(toy: Grammar, lines: list[str], rule: str, seen: tuple
     """Characters in pairs around other text are quotes; those side by side are one sign."""
     found = unknown_token([(line, n) for n, line in enumerate(lines)], lexer_of(toy), toy.by_name)
     assert found is not None
-    assert (rule, seen[0]) == (found[0], found[2][0])
+    assert (rule, seen[0]) == (found.rule, found.seen[0])
+    assert found.is_value == ("TEXT" in rule)
     read(f"{toy.text}\n{rule}\n")
 
 
@@ -48,7 +49,7 @@ def test_no_letter_is_a_sign(toy: Grammar) -> None:
     taken = {*toy.by_name, "AMPERSAND"}
     found = unknown_token([("A & B", 0)], lexer_of(toy), taken)
     assert found is not None
-    assert found[0] == "AMPERSAND_2 : '&' ;"
+    assert found.rule == "AMPERSAND_2 : '&' ;"
 
 
 @pytest.mark.parametrize(("origins", "accepted"), [("ABC", True), ("A", False)])
