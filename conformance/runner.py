@@ -260,8 +260,8 @@ def run_cases(
         shares = [[case] for case in cases]  # nothing is sent anywhere, and progress is seen
     done: list[CaseResult] = []
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
-        notes = Path(name) if scheduler is None else None
-        tasks = ((share, lacking, listed, notes) for share in shares)
+        given = _Conditions(lacking, listed, Path(name) if scheduler is None else None)
+        tasks = ((share, given) for share in shares)
         lost = partial(_run_singly, scheduler=scheduler)
         try:
             for results in ordered_map(
@@ -275,27 +275,33 @@ def run_cases(
     return done
 
 
-def _run_share(
-    cases: Sequence[Case],
-    lacking: Mapping[Setup, str],
-    known: KnownFailures,
-    notes: Path | None,
-) -> list[CaseResult]:
-    """Run cases with setups; ``lacking`` says for each why the caller does not have it, or "".
+@dataclass(frozen=True, slots=True)
+class _Conditions:
+    """What all cases of a run are run with.
 
-    A file in the folder ``notes`` says what this process is running.
+    ``lacking`` says for each setup why the caller does not have it, or "". In the folder ``notes``
+    a file of each process says what it is running.
     """
-    for setup, why in lacking.items():
+
+    lacking: Mapping[Setup, str]
+    known: KnownFailures
+    notes: Path | None
+
+
+def _run_share(cases: Sequence[Case], given: _Conditions) -> list[CaseResult]:
+    """Run cases in this process."""
+    for setup, why in given.lacking.items():
         if not why and missing(setup):
             raise WorkersError(f"a worker on {node()} lacks what is here: {missing(setup)}")
-    note = None if notes is None else notes / str(os.getpid())
+    note = None if given.notes is None else given.notes / str(os.getpid())
 
     def see(case: Case, setup: Setup) -> Observation:
         if note is not None:
             note.write_text(f"{case.name} on {setup.executor}/{setup.robot}", encoding="utf-8")
         return observe(case, setup)
 
-    run = partial(run_case, setups=tuple(lacking), known=known, see=see, absent=lacking.__getitem__)
+    setups, absent = tuple(given.lacking), given.lacking.__getitem__
+    run = partial(run_case, setups=setups, known=given.known, see=see, absent=absent)
     done = [repeated(partial(run, case)) for case in cases]
     if note is not None:
         note.unlink(missing_ok=True)
@@ -303,25 +309,15 @@ def _run_share(
 
 
 def _run_singly(
-    share: Sequence[Case],
-    lacking: Mapping[Setup, str],
-    known: KnownFailures,
-    notes: Path | None,
-    *,
-    scheduler: str | None,
+    share: Sequence[Case], given: _Conditions, *, scheduler: str | None
 ) -> list[CaseResult]:
     """Run each case by itself, because one of them killed its process."""
-    singles = (([case], lacking, known, notes) for case in share)
+    singles = (([case], given) for case in share)
     found = ordered_map(_run_share, singles, jobs=2, scheduler=scheduler, lost=_process_died)
     return [result for results in found for result in results]
 
 
-def _process_died(
-    cases: Sequence[Case],
-    lacking: Mapping[Setup, str],
-    _known: KnownFailures,
-    _notes: Path | None,
-) -> list[CaseResult]:
-    reason = "the process died"
-    failed = tuple(Result(one.executor, one.robot, "fail", reason, (), 0.0) for one in lacking)
+def _process_died(cases: Sequence[Case], given: _Conditions) -> list[CaseResult]:
+    why = "the process died"
+    failed = tuple(Result(one.executor, one.robot, "fail", why, (), 0.0) for one in given.lacking)
     return [CaseResult(case, failed) for case in cases]
