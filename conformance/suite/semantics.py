@@ -83,7 +83,7 @@ _SOURCES = """\
 | S5 | machine data of several robots |
 | S6 | a public list of 445 system variables with descriptions |
 | S7 | KUKA.PLC mxAutomation Logix 1.0, programming, page 25 |
-| T1 to T23 but T21 | manuals and texts of KUKA College, transcribed or translated on public pages |
+| T1 to T27 but T21 | manuals and texts of KUKA College, transcribed or translated on public pages |
 | T21 | KUKA.PLC mxAutomation, its function blocks described again by Beckhoff (TF5120) |
 | F1 to F4 | robot-forum.com on blending (14422), triggers (34556), axes (24428), REAL (35090) |
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
