@@ -12,7 +12,7 @@ from pathlib import Path
 
 from conformance.suite.registry import Rule, registry
 from grammar.diagnostics.codes import by_slug
-from grammar.semantics.rules import is_confirmed
+from grammar.semantics.rules import is_confirmed, tiers
 
 PAGE = Path(__file__).parents[2] / "docs" / "semantics.md"
 #: The tier of each rule, for the packages below this one (`grammar.semantics.rules`).
@@ -83,8 +83,10 @@ _SOURCES = """\
 | S5 | machine data of several robots |
 | S6 | a public list of 445 system variables with descriptions |
 | S7 | KUKA.PLC mxAutomation Logix 1.0, programming, page 25 |
+| S8 | KUKA's quick guide to the syntax of KRL, KSS 8.x, its beginning: names, data, arrays |
 | T1 to T27 but T21 | manuals and texts of KUKA College, transcribed or translated on public pages |
 | T21 | KUKA.PLC mxAutomation, its function blocks described again by Beckhoff (TF5120) |
+| T28 | m.elecfans.com, 1855831 and 1952046: $ERR and ON_ERROR_PROCEED, from a manual |
 | F1 to F4 | robot-forum.com on blending (14422), triggers (34556), axes (24428), REAL (35090) |
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
 | D1 | 2,920 taught points of ten public repositories, 443 of them with machine data |
@@ -172,5 +174,6 @@ def tier_table() -> str:
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8", newline="\n")
     TIERS.write_text(tier_table(), encoding="utf-8", newline="\n")
+    tiers.cache_clear()
+    PAGE.write_text(page(), encoding="utf-8", newline="\n")

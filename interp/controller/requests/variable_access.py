@@ -73,7 +73,7 @@ class VariableAccess:
         state.later(at, lambda: state.put(request.path, value))
 
     def _note_error(self, task: Task, request: Write) -> None:
-        """Store number and place of the error that ON_ERROR_PROCEED caught [TYP-13, FCT-07]."""
+        """Store number and place of the error that ON_ERROR_PROCEED caught [FCT-12]."""
         variables = self._state.variables
         variables.put(request.path, request.value)
         if request.path != ("$ERR", "NUMBER"):
