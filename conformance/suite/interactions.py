@@ -47,7 +47,11 @@ _BESIDE: Final = (
     "      $OUT[40] = TRUE ;> out 40 TRUE after out 1 [SUB-01]\n    ENDIF\n"
     "    WAIT SEC 0.024\n  ENDLOOP\nEND\n"
 )
-_FIRST: Final = "INT-01"
+#: What stops the arm on its path, and the rule by which it keeps to it.
+_STOPS: Final = {"brake": "INT-09.b", "brake_hard": "INT-09.b", "operator": "CTL-08"}
+_STOPPED: Final = re.compile(r"(;> pa(?:th|sses) .*)\[.*\]")
+#: The rule of the last expectation of each case.
+_FIRST: Final = "MOT-20"
 _SPEED: Final = "  $VEL.CP = 0.25"
 _RULE: Final = re.compile(r"\[(.{3}-.{2})")
 
@@ -116,9 +120,7 @@ def drawn(seed: int) -> list[Case]:
 def _front(row: Row) -> Iterator[str]:
     lines = [*_main("", row), *(["[SUB-01]"] if row["beside"] == "submit" else [])]
     cited = sorted({rule for text in lines for rule in _RULE.findall(text)})
-    first = _FIRST if row["act"] != "operator" else cited[0]
-    others = [one for one in cited if one != first]
-    yield f";@ rule: {', '.join([first, *others])}"
+    yield f";@ rule: {', '.join([_FIRST, *(one for one in cited if one != _FIRST)])}"
     parts = (row["trigger"], "trigger"), (row["behind"], "behind"), (row["beside"], "too")
     words = ", ".join(f"{value} {what}" for value, what in parts if value != "none")
     words = f"{row['path']}, {row['act']} at {row['when']} s; {words or 'nothing else'}; "
@@ -148,7 +150,7 @@ def _main(name: str, row: Row) -> list[str]:
     motions, behind = (_STATEMENTS[what][row[what]].splitlines() for what in ("path", "behind"))
     if is_left:
         motions = [_bare(text) for text in motions if not text.startswith(";")]
-        behind = [_bare(text) for text in behind]
+        behind = [_bare(text) for text in behind if not text.startswith(";")]
     else:
         last = "3" if blends else "2"
         behind = [text.replace("LAST", last) for text in behind]
@@ -157,6 +159,8 @@ def _main(name: str, row: Row) -> list[str]:
                 text.replace(" at end", " after end").replace(f" before end {last}", "")
                 for text in behind
             ]
+        if row["act"] in _STOPS:  # how it stops and goes on is less certain than its path
+            motions = [_STOPPED.sub(rf"\1[{_STOPS[row['act']]}]", text) for text in motions]
     return (
         _template()
         .render(
@@ -164,6 +168,7 @@ def _main(name: str, row: Row) -> list[str]:
             name=name,
             is_left=is_left,
             is_cp=row["path"] in _CP,
+            never=f"never [{_never(row)}]",
             moment="apex 2 [TRG-02]" if blends else "end 2 [TRG-01]",
             motions=motions,
             after=behind,
@@ -171,6 +176,13 @@ def _main(name: str, row: Row) -> list[str]:
         )
         .splitlines()
     )
+
+
+def _never(row: Row) -> str:
+    """Return the rule by which the end of the motion that is left is not reached."""
+    if row["act"] == "resume_deep":
+        return "INT-08.b"
+    return "INT-10" if row["when"] == min(FEATURES["when"]) else "INT-09.b"
 
 
 def _bare(text: str) -> str:
