@@ -84,11 +84,14 @@ _SOURCES = """\
 | S6 | a public list of 445 system variables with descriptions |
 | S7 | KUKA.PLC mxAutomation Logix 1.0, programming, page 25 |
 | S8 | KUKA's quick guide to the syntax of KRL, KSS 8.x, its beginning: names, data, arrays |
+| S9 | KR C2, operating handbook, machine data (2005), pages 74 to 77 |
 | T1 to T27 but T21 | manuals and texts of KUKA College, transcribed or translated on public pages |
+| T28 | zlcrobot.com on motions to absolute targets, from a text of KUKA College |
 | T21 | KUKA.PLC mxAutomation, its function blocks described again by Beckhoff (TF5120) |
 | T28 | m.elecfans.com, 1855831 and 1952046: $ERR and ON_ERROR_PROCEED, from a manual |
 | F1 to F4 | robot-forum.com on blending (14422), triggers (34556), axes (24428), REAL (35090) |
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
+| F6 | robot-forum.com on velocities in T1 (43227) |
 | D1 | 2,920 taught points of ten public repositories, 443 of them with machine data |
 | D2 to D4 | programs in public repositories |
 | X1 to X7 | pages of unknown or machine-written origin, named where they contradict |
