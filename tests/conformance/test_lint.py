@@ -70,6 +70,11 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
         ),
         ("control/good.src", "runs 1", "halt", "CTL-01 says nothing of"),
         ("control/good.src", "runs 1", "fault 1444", "CTL-01 does not say that 1444"),
+        (
+            *("control/good.src", GOOD),
+            citing("CTL-01, TYP-09", "error KSS1444").replace("phase: run", "phase: check"),
+            "CTL-01 does not say that 1444",
+        ),
         *(
             (f"{suite}/good.src", GOOD, citing(rule, expected), part)
             for suite, rule, expected, part in (

@@ -91,6 +91,17 @@ def test_own_codes_are_any_complaint_about_the_line(tmp_path: Path, cases: list[
     assert {case.name: "fail"} == verdicts(written(tmp_path, nothing), cases)
 
 
+@pytest.mark.parametrize(("code", "verdict"), [("KSS2275", "pass"), ("KSS2276", "fail")])
+def test_a_message_of_the_same_meaning_counts(
+    tmp_path: Path, own_cases: list[Case], code: str, verdict: str
+) -> None:
+    """A controller has two messages for an argument of the wrong type, we have one."""
+    (case,) = selected(own_cases, ["data/in_wrong_type"])
+    (one,) = (each for each in case.expectations if each.kind == "error")
+    told = entry(case, findings=[{"file": one.file, "line": one.line, "code": code}])
+    assert {case.name: verdict} == verdicts(written(tmp_path, told), [case])
+
+
 @pytest.mark.parametrize("name", ["io/out_8193", "interrupt/prio_three", "trigger/call_prio_129"])
 def test_what_we_warn_of_may_be_reported_while_running(
     tmp_path: Path, own_cases: list[Case], name: str
