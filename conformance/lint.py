@@ -49,6 +49,7 @@ _CLAUSE_WORDS: Final = {
     "path circle": "circle CIRC",
     "path joint": "axes",
     "speed": "velocity speed acceleration VEL Parameters",
+    "blends": "approximated blend CONTINUE",
     "smooth": "velocity speed acceleration",
     "limits": "velocity speed limits fast",
     "brake": "BRAKE",
@@ -203,8 +204,9 @@ def _untimed(clause: Rule | Clause, one: Expectation, when: When) -> str:
     if topic == "INT" and when.relation in ("at", "between"):
         return "the latency of an interrupt is not known [INT-18]"
     is_soon = when.relation == "at" or (when.relation == "before" and when.first.event == "start")
-    if one.kind == "planned" and is_soon:
-        return "how soon a motion is planned depends on the computing power [ADV-03]"
+    is_in_advance = one.kind == "planned" or (topic == "ADV" and "in step" not in clause.statement)
+    if is_in_advance and is_soon:
+        return "how soon it is done depends on the computing power [ADV-03]"
     if topic in _TIMELESS and "advance" not in clause.statement and when.relation != "after":
         return f"{clause.id} gives no time"
     return ""

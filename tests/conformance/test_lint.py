@@ -82,6 +82,8 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
                 ("submit", "SUB-01", "line before 2", "has no period"),
                 ("interrupt", "INT-05", "line at in 1", "the latency of an interrupt is not known"),
                 ("advance", "ADV-01", "planned at start 2", "depends on the computing power"),
+                ("advance", "ADV-05", "line at end 2", "depends on the computing power"),
+                ("blending", "BLD-01.a", "blends", "BLD-01.a says nothing of"),
                 ("types", "TYP-09", "line at 0.5", "TYP-09 gives no time"),
             )
         ),
