@@ -5,9 +5,10 @@ chooses the primitive of an operator from the kinds of its operands that the che
 conversions that the operands need first. `apply` does the same at run time from the values. Both
 use one table, so an operator has one meaning.
 
-Operands are evaluated from left to right, and always both: AND and OR do not stop after the first,
-as no rule says that they would (unconfirmed). An INT combined with a REAL is first converted to
-REAL, and so rounded to single [ARI-01]. A CHAR in a relation or bit operation is its code [ARI-10].
+Operands are evaluated from left to right, and always both: AND and OR, whose operands are BOOL
+[ARI-13], do not stop after the first, as no rule says that they would (unconfirmed). An INT
+combined with a REAL is first converted to REAL, and so rounded to single [ARI-01]. A CHAR in a
+relation or bit operation is its code [ARI-10].
 A missing value is detected when the variable is read, so primitives never see ``None``.
 """
 
