@@ -61,6 +61,11 @@ _TIMELESS: Final = frozenset("TYP ARI FCT SCO MSG POS ORI CON".split())
 #: A line that asks for the number of the last error, and one after which that number is another.
 _ASKED: Final = re.compile(r"=.*\$ERR\.NUMBER", re.IGNORECASE)
 _CLEARED: Final = re.compile(r"\s*(ERR_CLEAR\b|\$ERR\.NUMBER *=|DEF)", re.IGNORECASE)
+#: ON_ERROR_PROCEED and the motion behind it, on which it has no effect [FCT-12.c].
+_UNHEEDED: Final = re.compile(
+    r"^ *ON_ERROR_PROCEED *(?:;.*)?\n *S?(?:PTP|LIN|CIRC|PTP_SPLINE|SPLINE)(?:_REL)?\b",
+    re.IGNORECASE | re.MULTILINE,
+)
 #: An expectation of a message number, and the syntax of numbers in rules, as in "3214 to 3217".
 _MESSAGE: Final = re.compile(r"(?:fault|message|error KSS|warning KSS) ?(\d{2,})")
 _NUMBERS: Final = re.compile(r"\d{2,}(?: to \d{2,})?")
@@ -247,8 +252,14 @@ def _numbers_in(statement: str) -> set[int]:
 
 
 def _error_defects(case: Case) -> Iterator[str]:
-    """Yield expectations of $ERR.NUMBER that an earlier fault has met already: it stays set."""
+    """Yield expectations of $ERR.NUMBER that an earlier fault has met already: it stays set.
+
+    Nor can a case that may fail ask for the fault of a motion, which ends the program.
+    """
     for source in case.sources:
+        if case.may_fail and (found := _UNHEEDED.search(source.text)):
+            number = source.text.count("\n", 0, found.end()) + 1
+            yield f"line {number}: ON_ERROR_PROCEED has no effect on a motion [FCT-12.c]"
         asked = 0
         for number, line in enumerate(source.text.splitlines(), start=1):
             if _CLEARED.match(line):

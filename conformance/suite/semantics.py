@@ -86,7 +86,6 @@ _SOURCES = """\
 | S8 | KUKA's quick guide to the syntax of KRL, KSS 8.x, its beginning: names, data, arrays |
 | S9 | KR C2, operating handbook, machine data (2005), pages 74 to 77 |
 | T1 to T27 but T21 | manuals and texts of KUKA College, transcribed or translated on public pages |
-| T28 | zlcrobot.com on motions to absolute targets, from a text of KUKA College |
 | T21 | KUKA.PLC mxAutomation, its function blocks described again by Beckhoff (TF5120) |
 | T30 to T32 | m.elecfans.com, 1990193, 2189475 and 1993339: numbers, logic, frames |
 | T33 | wxredian.com/art?id=b2ebd5a111fd52ab5c4cd7a9c9989972: relations |
@@ -94,6 +93,7 @@ _SOURCES = """\
 | T35, T36 | citih.cn/i116162.htm: $ERR; m.elecfans.com/article/2049892: CWRITE |
 | T37 | programming user-defined messages: scribd.com/document/617606976, openkuka.github.io/krl |
 | T28 | m.elecfans.com, 1855831 and 1952046: $ERR and ON_ERROR_PROCEED, from a manual |
+| T29 | zlcrobot.com on motions to absolute targets, from a text of KUKA College |
 | F1 to F4 | robot-forum.com on blending (14422), triggers (34556), axes (24428), REAL (35090) |
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
 | F6 | robot-forum.com on velocities in T1 (43227) |

@@ -68,6 +68,11 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
             "N = $ERR.NUMBER ;> value N 5\n  N = $ERR.NUMBER ;> value N 5",
             "line 6: line 5 has not cleared $ERR",
         ),
+        (
+            *("control/good.src", "HALT ;"),
+            "ON_ERROR_PROCEED\n  PTP_REL {A1 500}\n  HALT ;",
+            "line 6: ON_ERROR_PROCEED has no effect on a motion",
+        ),
         ("control/good.src", "runs 1", "halt", "CTL-01 says nothing of"),
         ("control/good.src", "runs 1", "fault 1444", "CTL-01 does not say that 1444"),
         (
