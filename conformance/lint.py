@@ -66,6 +66,8 @@ _UNHEEDED: Final = re.compile(
     r"^ *ON_ERROR_PROCEED *(?:;.*)?\n *S?(?:PTP|LIN|CIRC|PTP_SPLINE|SPLINE)(?:_REL)?\b",
     re.IGNORECASE | re.MULTILINE,
 )
+#: A wait for some time.
+_TIMED: Final = re.compile(r"\bWAIT +SEC +0*\.?0*[1-9]", re.IGNORECASE)
 #: An expectation of a message number, and the syntax of numbers in rules, as in "3214 to 3217".
 _MESSAGE: Final = re.compile(r"(?:fault|message|error KSS|warning KSS) ?(\d{2,})")
 _NUMBERS: Final = re.compile(r"\d{2,}(?: to \d{2,})?")
@@ -150,6 +152,7 @@ def _defects(case: Case) -> Iterator[str]:
     yield from _clause_defects(case)
     yield from _error_defects(case)
     yield from _refusals(case)
+    yield from _periods(case)
 
 
 def _text_defects(case: Case) -> Iterator[str]:
@@ -228,6 +231,18 @@ def _refusals(case: Case) -> Iterator[str]:
         is_refused = one.severity == "error" and not one.may_come_late(one.code)
         if is_refused and one.file.lower() != "$machine.dat":
             yield f"{one.file}:{one.line}: {one.code} refuses what is expected to run"
+
+
+def _periods(case: Case) -> Iterator[str]:
+    """Yield that a program gives its submit program a time for what that is to do [SUB-03]."""
+    code = re.sub(";.*", "", case.sources[0].text)
+    is_timed = case.phase == "run" and _TIMED.search(code)
+    if not is_timed or re.search(r"\bWAIT +FOR\b", code, re.IGNORECASE):
+        return
+    for one in case.expectations:
+        is_hard = not case.unconfirmed and basis(one.basis or case.basis or case.rules[0]).may_fail
+        if one.file.lower().endswith(".sub") and is_hard and not one.is_absence:
+            yield f"{one.file}:{one.line}: a submit program has no period: WAIT FOR what it does"
 
 
 def _message_of(case: Case, one: Expectation) -> int:

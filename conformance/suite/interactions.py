@@ -44,7 +44,7 @@ FEATURES: Final[Mapping[str, tuple[str, ...]]] = {
 _CP: Final = ("lin", "spline", "rel")
 _BESIDE: Final = (
     "DEF BESIDE()\n  LOOP\n    IF $OUT[1] THEN\n"
-    "      $OUT[40] = TRUE ;> out 40 TRUE after out 1 [SUB-01]\n    ENDIF\n"
+    "      $OUT[40] = TRUE ;> out 40 TRUE after out 1 [SUB-03.b]\n    ENDIF\n"
     "    WAIT SEC 0.024\n  ENDLOOP\nEND\n"
 )
 #: What stops the arm on its path, and the rule by which it keeps to it.
@@ -118,7 +118,7 @@ def drawn(seed: int) -> list[Case]:
 
 
 def _front(row: Row) -> Iterator[str]:
-    lines = [*_main("", row), *(["[SUB-01]"] if row["beside"] == "submit" else [])]
+    lines = [*_main("", row), *(["[SUB-03.b]"] if row["beside"] == "submit" else [])]
     cited = sorted({rule for text in lines for rule in _RULE.findall(text)})
     yield f";@ rule: {', '.join([_FIRST, *(one for one in cited if one != _FIRST)])}"
     parts = (row["trigger"], "trigger"), (row["behind"], "behind"), (row["beside"], "too")

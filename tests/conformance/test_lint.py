@@ -110,6 +110,18 @@ def test_faults_are_found(tmp_path: Path, name: str, old: str, new: str, part: s
     assert part in "\n".join(found)
 
 
+def test_a_time_for_a_submit_program_is_found(tmp_path: Path) -> None:
+    """Its turns have no period: a program waits for what it does, not for a time."""
+    folder = tmp_path / "submit"
+    folder.mkdir()
+    sub = "DEF HELPER()\n  LOOP\n    $OUT[1] = TRUE ;> out 1 TRUE\n  ENDLOOP\nEND\n"
+    (folder / "helper.sub").write_text(sub, encoding="utf-8")
+    good = citing("SUB-01", "runs 1").replace(";@ phase", ";@ with: helper.sub\n;@ phase")
+    for wait, found in (("SEC 1", 1), ("SEC 0.05", 1), ("SEC 0", 0), ("FOR $OUT[1]", 0)):
+        (folder / "good.src").write_text(good.replace("HALT", f"WAIT {wait}"), encoding="utf-8")
+        assert found == sum("WAIT FOR what it does" in fault for fault in lint(tmp_path))
+
+
 def test_files_of_no_case_and_repeated_titles_are_found(tmp_path: Path) -> None:
     """Each file belongs to a case, each fact stands once."""
     folder = tmp_path / "control"
