@@ -197,6 +197,8 @@ def _clause_defects(case: Case) -> Iterator[str]:
             is_meant = one.text.startswith(begins)
             if is_meant and not any(word in clause.statement for word in words.split()):
                 yield f"line {one.line}: {clause.id} says nothing of {one.text!r}"
+        if one.kind == "lasts":
+            yield f"line {one.line}: no rule says how long a motion takes, only how long at least"
         if one.when and (why := _untimed(clause, one, one.when)):
             yield f"line {one.line}: {why} for {one.text!r}"
         number = _message_of(case, one)

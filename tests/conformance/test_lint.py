@@ -74,6 +74,7 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
             "line 6: ON_ERROR_PROCEED has no effect on a motion",
         ),
         ("control/good.src", "runs 1", "halt", "CTL-01 says nothing of"),
+        ("control/good.src", "runs 1", "lasts 2", "no rule says how long"),
         ("control/good.src", "runs 1", "fault 1444", "CTL-01 does not say that 1444"),
         (
             *("control/good.src", GOOD),
