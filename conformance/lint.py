@@ -10,6 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Final
 
@@ -68,8 +69,8 @@ _UNHEEDED: Final = re.compile(
 )
 #: A wait for some time.
 _TIMED: Final = re.compile(r"\bWAIT +SEC +0*\.?0*[1-9]", re.IGNORECASE)
-#: An expectation of a message number, and the syntax of numbers in rules, as in "3214 to 3217".
-_MESSAGE: Final = re.compile(r"(?:fault|message|error KSS|warning KSS) ?(\d{2,})")
+#: The syntax of message numbers in expectations, and in rules, as in "3214 to 3217".
+_MESSAGE: Final = re.compile(r"(?:KSS)?(\d{2,})(?:\.0)?")
 _NUMBERS: Final = re.compile(r"\d{2,}(?: to \d{2,})?")
 
 
@@ -201,8 +202,7 @@ def _clause_defects(case: Case) -> Iterator[str]:
             yield f"line {one.line}: no rule says how long a motion takes, only how long at least"
         if one.when and (why := _untimed(clause, one, one.when)):
             yield f"line {one.line}: {why} for {one.text!r}"
-        number = _message_of(case, one)
-        if number and "never" not in one.arguments and number not in _numbers_in(clause.statement):
+        for number in sorted(_messages_of(case, one) - _numbers_in(clause.statement)):
             yield f"line {one.line}: {clause.id} does not say that {number} is the message"
 
 
@@ -247,16 +247,21 @@ def _periods(case: Case) -> Iterator[str]:
             yield f"{one.file}:{one.line}: a submit program has no period: WAIT FOR what it does"
 
 
-def _message_of(case: Case, one: Expectation) -> int:
-    """Return the message number that is expected; 0 if none is, or if it is the program's own."""
-    source = next(each.text for each in case.sources if each.path == one.file)
-    line = source.splitlines()[one.line - 1]
-    found = _MESSAGE.match(one.text)
-    if one.kind == "value" and "= $ERR.NUMBER" in line.upper():
-        found = re.fullmatch(r"value \S+ (\d{2,})", one.text)
+def _messages_of(case: Case, one: Expectation) -> set[int]:
+    """Return the message numbers that are expected, without those that the program itself has."""
     code = "\n".join(re.sub(";.*", "", each.text) for each in case.sources)
-    is_own = found is not None and re.search(rf"\b{found[1]}\b", code)
-    return int(found[1]) if found and not is_own else 0
+    found = {int(each[1]) for word in one.arguments if (each := _MESSAGE.fullmatch(word))}
+    if one.kind in ("value", "values") and "$ERR.NUMBER" in code.upper():
+        found &= _known_messages()
+    elif one.kind not in ("fault", "message", "error", "warning", "note") or one.is_absence:
+        return set()
+    return found - {int(each) for each in re.findall(r"\b\d+\b", code)}
+
+
+@cache
+def _known_messages() -> set[int]:
+    rules = [one for one in registry().values() if one.topic == "MSG"]
+    return {number for one in rules for number in _numbers_in(one.statement)}
 
 
 def _numbers_in(statement: str) -> set[int]:

@@ -81,6 +81,15 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
             citing("CTL-01, TYP-09", "error KSS1444").replace("phase: run", "phase: check"),
             "CTL-01 does not say that 1444",
         ),
+        ("control/good.src", "runs 1", "message 1444 never", ""),
+        *(
+            ("control/good.src", "HALT ;> runs 1", told, "CTL-01 does not say that 1444")
+            for told in (
+                "N = $ERR.NUMBER ;> value N 1444 [CTL-01]",
+                "F.X = $ERR.NUMBER ;> value F.X 1444.0",
+                "N = TOLD() ;> values N 0 1444\nEND\nDEF TOLD()\n  RETURN $ERR.NUMBER",
+            )
+        ),
         *(
             (f"{suite}/good.src", GOOD, citing(rule, expected), part)
             for suite, rule, expected, part in (
