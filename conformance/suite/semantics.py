@@ -85,15 +85,19 @@ _SOURCES = """\
 | S7 | KUKA.PLC mxAutomation Logix 1.0, programming, page 25 |
 | S8 | KUKA's quick guide to the syntax of KRL, KSS 8.x, its beginning: names, data, arrays |
 | S9 | KR C2, operating handbook, machine data (2005), pages 74 to 77 |
-| T1 to T27 but T21 | manuals and texts of KUKA College, transcribed or translated on public pages |
+| T1 to T23 but T21 | manuals and texts of KUKA College, transcribed or translated on public pages |
 | T21 | KUKA.PLC mxAutomation, its function blocks described again by Beckhoff (TF5120) |
+| T24, T25 | m.elecfans.com/article/1905092: signals; m.163wenku.com/p-4165416.html: waits |
+| T26 | huluic.cn/article/i1g6a9h3j1i951068.html: timers and flags, from Expert Programming |
+| T27 | news.eeworld.com.cn/robot/ic661686.html: interrupts |
+| T28 | m.elecfans.com, 1855831 and 1952046: $ERR and ON_ERROR_PROCEED, from a manual |
+| T29 | zlcrobot.com on motions to absolute targets, from a text of KUKA College |
 | T30 to T32 | m.elecfans.com, 1990193, 2189475 and 1993339: numbers, logic, frames |
 | T33 | wxredian.com/art?id=b2ebd5a111fd52ab5c4cd7a9c9989972: relations |
 | T34 | blog.csdn.net/weixin_39973410/article/details/111205424: functions on texts |
 | T35, T36 | citih.cn/i116162.htm: $ERR; m.elecfans.com/article/2049892: CWRITE |
 | T37 | programming user-defined messages: scribd.com/document/617606976, openkuka.github.io/krl |
-| T28 | m.elecfans.com, 1855831 and 1952046: $ERR and ON_ERROR_PROCEED, from a manual |
-| T29 | zlcrobot.com on motions to absolute targets, from a text of KUKA College |
+| T38 | wenku.csdn.net/doc/jere816oec: dialogues, from KUKA's course Programming 3, KSS 8 |
 | F1 to F4 | robot-forum.com on blending (14422), triggers (34556), axes (24428), REAL (35090) |
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
 | F6 | robot-forum.com on velocities in T1 (43227) |
