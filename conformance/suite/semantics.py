@@ -84,7 +84,7 @@ _SOURCES = """\
 | S6 | a public list of 445 system variables with descriptions |
 | S7 | KUKA.PLC mxAutomation Logix 1.0, programming, page 25 |
 | S8 | KUKA's quick guide to the syntax of KRL, KSS 8.x, its beginning: names, data, arrays |
-| S9 | KR C2, operating handbook, machine data (2005), pages 74 to 77 |
+| S9 | KR C2, operating handbook, machine data (2005), pages 14 and 74 to 77 |
 | S10 | delivered with a controller: `MsgLib.src` and `BrakeTestReq.src`, in public backups |
 | T1 to T23 but T21 | manuals and texts of KUKA College, transcribed or translated on public pages |
 | T21 | KUKA.PLC mxAutomation, its function blocks described again by Beckhoff (TF5120) |
