@@ -1,4 +1,7 @@
-"""Rewriting of syntax trees, bottom-up; a statement can be replaced by several."""
+"""Rewriting of syntax trees, bottom-up; a statement can be replaced by several.
+
+Not where ON_ERROR_PROCEED is about that statement.
+"""
 
 from __future__ import annotations
 
@@ -55,12 +58,17 @@ def _with_changed(
 
 
 def _sequence(items: Sequence[Any], change: Change) -> Iterator[Any]:
+    before = None
     for item in items:
         found = _changed(item, change) if isinstance(item, ast.Node) else item
-        if isinstance(found, tuple):
+        # of several statements only the first would be under an ON_ERROR_PROCEED
+        if isinstance(found, tuple) and isinstance(before, ast.OnErrorProceed):
+            yield item
+        elif isinstance(found, tuple):
             yield from found
         else:
             yield found
+        before = item
 
 
 # ---------------------------------------------------------------------------------- generated nodes
