@@ -505,7 +505,7 @@ class Continue(Node):
 @template("ON_ERROR_PROCEED")
 @node
 class OnErrorProceed(Node):
-    """ON_ERROR_PROCEED: an error of the next statement is stored in $ERR [TYP-13]."""
+    """ON_ERROR_PROCEED: an error of the next statement is stored in $ERR [FCT-12]."""
 
 
 @template("CONFIRM <number>")

@@ -31,6 +31,7 @@ from interp.controller.requests.waits import Waits
 from interp.controller.scheduler import HOUR, RunOutcome, Scheduler
 from interp.controller.spline_stops import SplineStops
 from interp.controller.state.declared_interrupts import Interrupts, interrupt_list
+from interp.controller.state.error_variable import ErrorVariable
 from interp.controller.state.profile import Profile
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import LevelKind, Task
@@ -102,9 +103,10 @@ class Controller:
         queue = MotionQueue(state, arm.core, outputs, positions, frames, tracking)
         channels = Channels(state.clock)
         connect_computed(state, arm.core, queue, channels)
-        tasks = [_task("robot", "$RINT_LIST", state, executor, sink)]
+        errors = ErrorVariable(state)
+        tasks = [_task("robot", "$RINT_LIST", state, errors, executor, sink)]
         if submit is not None:
-            tasks.append(_task("submit", "$SINT_LIST", state, submit, submit_sink))
+            tasks.append(_task("submit", "$SINT_LIST", state, errors, submit, submit_sink))
         panel = OperatorPanel(state, arm, tasks)
         player = ScriptPlayer(script, state, panel, channels)
         automatic = AutomaticInputs(script, state)
@@ -119,7 +121,7 @@ class Controller:
         motions = MotionRequests(state, queue)
         table = _table(
             state,
-            VariableAccess(state, queue, advance, automatic),
+            VariableAccess(state, queue, advance, automatic, errors),
             PredefinedRoutines(state, arm, frames, channels, advance),
             waits,
             motions,
@@ -228,13 +230,14 @@ def _task(
     name: TaskName,
     list_name: str,
     state: ControllerState,
+    errors: ErrorVariable,
     executor: Executor,
     sink: TaskSink | None,
 ) -> Task:
     most = state.profile.most
     interrupts = Interrupts(most["interrupts"], most["active_interrupts"])
     if sink is not None:
-        sink.left = interrupts.forget
+        sink.left = [interrupts.forget, partial(errors.forget, name)]
     state.variables.connect([list_name], Computed(partial(interrupt_list, interrupts)))
     return Task(name, executor, sink, interrupts)
 
@@ -254,6 +257,7 @@ def _table(
     table = RequestTable()
     table.add(requests.Read, variables.read)
     table.add(requests.Write, variables.write)
+    table.add(requests.EmptyError, variables.empty_error)
     table.add(requests.Invoke, routines.call)
     table.add(requests.Wait, waits.wait)
     table.add(requests.Poll, waits.poll)

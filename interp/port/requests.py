@@ -140,6 +140,11 @@ class Continue(BaseRequest):
 
 
 @dataclass(frozen=True, slots=True)
+class EmptyError(BaseRequest):
+    """ON_ERROR_PROCEED: `$ERR` becomes empty [FCT-12]."""
+
+
+@dataclass(frozen=True, slots=True)
 class Slice(BaseRequest):
     """The executor has run a full slice of statements without another request: time must pass.
 
@@ -328,6 +333,7 @@ Request = (
     | Poll
     | Halt
     | Continue
+    | EmptyError
     | Slice
     | Confirm
     | Move

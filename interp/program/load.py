@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import field, replace
 from functools import cached_property
-from itertools import chain
+from itertools import chain, pairwise
 
 from grammar.check.analysis.context import placed
 from grammar.check.analysis.spelling import spelling_of
@@ -25,6 +25,7 @@ from grammar.semantics.types import Array, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
+from grammar.syntax.walk import BODIES, bodies, walk
 from interp.standins.completion import LIST_OF_ONE, StandIn, complete
 from interp.standins.missing_returns import with_returns
 from interp.standins.unreadable_lines import Readable, readable
@@ -78,6 +79,20 @@ class Unit:
     def line(self, node: ast.Node) -> int:
         """Return the line in which a node begins, counted from 1."""
         return self.source.place(node.span[0])[0]
+
+    @cached_property
+    def suppressing(self) -> frozenset[ast.Span]:
+        """The spans of each ON_ERROR_PROCEED with an effect: not on motions and blocks [FCT-12]."""
+        nodes = walk(self.module.syntax) if self.module.syntax else ()
+        lists = chain.from_iterable(map(bodies, nodes))
+        return frozenset(
+            one.span
+            for body in lists
+            for one, following in pairwise(each for each in body if not isinstance(each, ast.Label))
+            if isinstance(one, ast.OnErrorProceed)
+            and not isinstance(following, ast.Motion | ast.EmilyMotion)
+            and type(following) not in BODIES
+        )
 
     def found(self, name: ast.Name) -> Found | None:
         """Return what a name in this file refers to, or ``None`` if that is unknown."""

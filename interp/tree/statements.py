@@ -315,10 +315,10 @@ class Statements(Motions):
             parts.append(value)
         yield made.request(self.at(), *parts)
 
-    def _proceed(self, _node: ast.OnErrorProceed) -> Steps[None]:
-        self.run.guard = Guard.NEXT
-        return
-        yield
+    def _proceed(self, node: ast.OnErrorProceed) -> Steps[None]:
+        yield requests.EmptyError(self.at())
+        if node.span in self.frame.unit.suppressing:
+            self.run.guard = Guard.NEXT
 
     def _wait_for(self, node: ast.WaitFor) -> Steps[None]:
         """WAIT FOR: make a request before each evaluation, so that time passes [CTL-12]."""

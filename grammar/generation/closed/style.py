@@ -10,7 +10,6 @@ from grammar.generation.closed.formatted_texts import format_text, scan_text
 from grammar.generation.closed.types import COLOUR, MODE, POINT, RECORD
 from grammar.generation.closed.unstated_effects import (
     count_beyond_range,
-    failing_block,
     order_of_evaluation,
     own_text,
 )
@@ -259,7 +258,6 @@ CLOSED: Final = Style(
         (6, own_text),
         (6, order_of_evaluation),
         (4, count_beyond_range),
-        (6, failing_block),
         (20, motions.motion),
         (14, _course),
         (8, motions.spline_motion),

@@ -8,7 +8,6 @@ from grammar.generation.closed.types import STATE
 from grammar.generation.code import Code
 from grammar.generation.expressions import array, constant, read, target
 from grammar.generation.literals import TEXT
-from grammar.generation.statements import assignment
 from grammar.semantics.types import INT
 
 #: First value, last value and step of a FOR whose counter leaves the range of INT.
@@ -17,17 +16,6 @@ _BEYOND: Final = (
     ("2147483645", "2147483647", " STEP 3"),
     ("-2147483647", "-2147483647-1", " STEP -1"),
     ("-2147483646", "-2147483647-1", " STEP -5"),
-)
-#: Lines that begin and end a block, with ``?`` where an expression fails.
-_FAILING: Final = (
-    ("IF ?==1 THEN", "ENDIF"),
-    ("SWITCH ?\nCASE 0,1", "DEFAULT\nENDSWITCH"),
-    ("SWITCH 1\nCASE 2,1", "ENDSWITCH"),
-    ("FOR %=1 TO ?", "ENDFOR"),
-    ("FOR %=? TO 2", "ENDFOR"),
-    ("FOR %=1 TO 2 STEP ?", "ENDFOR"),
-    ("WHILE ?>0", "ENDWHILE"),
-    ("REPEAT", "UNTIL ?>0"),
 )
 
 
@@ -82,31 +70,6 @@ def count_beyond_range(code: Code) -> bool:
             code.line("ON_ERROR_PROCEED")
     place = target(code, INT)
     return place is None or code.set(place, f"{counter} B_EXOR {passes}")
-
-
-def failing_block(code: Code) -> bool:
-    """ON_ERROR_PROCEED before a block whose condition, selector or limit fails."""
-    place = target(code, INT)
-    used = {one.name for one in code.counters}
-    spare = [name for name in code.passes if name not in used]
-    if not code.risk or place is None or not spare or code.left() < 24:
-        return False
-    choices, counter = code.choices, spare[0]
-    opener, closer = choices.pick(_FAILING)
-    failing = choices.pick((f"1/(0*{counter})", f"2147483647+1+0*{counter}", "SQRT(0.5-1)"))
-    if "SWITCH" in opener:  # it needs an INT
-        failing = f"1/(0*{counter})"
-    code.spend(20)
-    code.line("ON_ERROR_PROCEED")
-    for line in opener.split("\n"):
-        code.line(line.replace("?", failing).replace("%", counter))
-    with code.indented():
-        code.set(counter, f"{counter}+1") if "%" not in opener else assignment(code)
-        if choices.chance(50):
-            code.set(place, "$ERR.NUMBER")
-    for line in closer.split("\n"):
-        code.line(line.replace("?", failing))
-    return code.set(place, f"$ERR.NUMBER+{counter}")
 
 
 def own_text(code: Code) -> bool:

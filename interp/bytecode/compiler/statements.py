@@ -107,8 +107,10 @@ class Statements(CodeMaker):
         elif isinstance(value, Reference):  # nothing takes the reference
             self._emit(Op.CLEAR, self._emitter.number(value.type))
 
-    def _proceed(self, _node: ast.OnErrorProceed, _end: Label) -> None:
-        self._emit(Op.PROCEED)
+    def _proceed(self, node: ast.OnErrorProceed, _end: Label) -> None:
+        self._emitter.ask("EmptyError")
+        if node.span in self._context.unit.suppressing:
+            self._emit(Op.PROCEED)
 
     def _wait_for(self, node: ast.WaitFor, end: Label) -> None:
         """Generate WAIT FOR; a request before each evaluation lets time pass [CTL-12]."""

@@ -6,13 +6,11 @@ from interp.controller.inputs.automatic_inputs import AutomaticInputs
 from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.state.clock import microseconds
-from interp.controller.state.declared_interrupts import module_name
-from interp.controller.state.predefined_values import word
+from interp.controller.state.error_variable import ErrorVariable
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Task
-from interp.port.requests import Read, SwitchSignal, Write
+from interp.port.requests import EmptyError, Read, SwitchSignal, Write
 from interp.values.faults import fault
-from interp.values.values import ArrayValue, StructureValue, set_text
 
 
 class VariableAccess:
@@ -24,16 +22,20 @@ class VariableAccess:
         queue: MotionQueue,
         advance: AdvanceRun,
         automatic: AutomaticInputs,
+        errors: ErrorVariable,
     ) -> None:
         self._state = state
         self._queue = queue
         self._advance = advance
         self._automatic = automatic
+        self._errors = errors
 
     def read(self, task: Task, request: Read) -> Answer:
         """Return the value of a variable. Raises `Fault`."""
         path, variables = request.path, self._state.variables
         self._automatic.was_read(task.name, path, request.at)
+        if path[0] == "$ERR":
+            self._errors.show(task)
         if variables.stops(str(path[0]), is_write=False):
             return self._advance.when_reached(task, request, lambda: variables.read(path))
         return variables.read(path)
@@ -45,7 +47,7 @@ class VariableAccess:
             self._queue.output_in_main_run(task, request.at, path, request.value)
             return None
         if name == "$ERR":
-            self._note_error(task, request)
+            self._errors.write(task, request)
             return None
         if name == "$ADVANCE" and task.levels:  # [INT-13]
             raise fault("read_only")
@@ -72,28 +74,7 @@ class VariableAccess:
         at = state.clock.now + microseconds(signal.delay)
         state.later(at, lambda: state.put(request.path, value))
 
-    def _note_error(self, task: Task, request: Write) -> None:
-        """Store number and place of the error that ON_ERROR_PROCEED caught [FCT-12]."""
-        variables = self._state.variables
-        variables.put(request.path, request.value)
-        if request.path != ("$ERR", "NUMBER"):
-            return
-        error = variables.read(("$ERR",))
-        if not isinstance(error, StructureValue):
-            return
-        level = task.level
-        error.set("INT_PRIO", level.priority if level else 0)
-        error.set("LINE_NR", request.at.line)
-        for name, text in (("MODULE", module_name(request.at.file)), ("UP_NAME", task.routine)):
-            part = error.get(name)
-            assert isinstance(part, ArrayValue)
-            set_text(part, text.upper())
-        variables.put(("$ERR",), error)
-        words = {
-            "INTERPRETER": ("PROG_INT_E", "R_INT" if task.name == "robot" else "S_INT"),
-            "INT_TYPE": ("INT_TYP_E", "I_INTERRUPT" if level else "I_NORMAL"),
-        }
-        if level is not None and level.call is not None:  # [TRG-12]; none is ever replayed
-            words["TRIGGER_TYPE"] = ("TRIGGER_UP_TYPE", "TRG_REGULAR")
-        for member, (type_name, name) in words.items():
-            variables.put(("$ERR", member), word(type_name, name))
+    def empty_error(self, task: Task, _request: EmptyError) -> Answer:
+        """Empty $ERR."""
+        self._errors.empty(task)
+        return None

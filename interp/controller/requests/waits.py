@@ -17,6 +17,7 @@ from interp.port.requests import (
     BrakeArm,
     Confirm,
     Continue,
+    EmptyError,
     Halt,
     Invoke,
     Poll,
@@ -58,7 +59,7 @@ _POSITIONS: Final = ("$POS_", "$AXIS_")
 _LONG_POSITION: Final = 10
 #: Requests that change nothing, those that always do something, and those that an executor makes
 #: for several at once.
-_LOOKS: Final = (Read, Slice, Continue)
+_LOOKS: Final = (Read, Slice, Continue, EmptyError)
 _ACTS: Final = (Invoke, Halt, Confirm, BrakeArm, Resume)
 _UNCOUNTED: Final = (Slice, StopAdvance)
 

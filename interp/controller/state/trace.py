@@ -7,7 +7,7 @@ nothing about the executor, wall-clock time or memory, and each event has only o
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
@@ -132,7 +132,7 @@ class Trace:
 class TaskSink:
     """Records the events of one executor.
 
-    ``left`` is called with the depth of each routine that has ended: the interrupts that it
+    ``left`` are called with the depth of each routine that has ended: the interrupts that it
     declared end with it [INT-04]. ``kinds`` are the kinds that the sink receives. Without
     ``keeps_calls``, calls are not recorded, and only serve to know which routines are open.
     """
@@ -142,7 +142,7 @@ class TaskSink:
     ) -> None:
         self.task: TaskName = task
         self.kinds = kinds
-        self.left: Callable[[int], None] | None = None
+        self.left: Sequence[Callable[[int], None]] = ()
         self._trace = trace
         self._keeps_calls = keeps_calls
         self._names: dict[int, str] = {}
@@ -172,8 +172,8 @@ class TaskSink:
         """A routine has ended."""
         if self._keeps_calls:
             self._trace.record(self.task, "return", at, name=name)
-        if self.left is not None:
-            self.left(at.depth)
+        for tell in self.left:
+            tell(at.depth)
 
     def branch(self, at: At, way: int) -> None:
         """A statement chose a branch."""
