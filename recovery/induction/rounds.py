@@ -55,7 +55,7 @@ from recovery.induction.steps import (
     described,
     joined,
 )
-from recovery.induction.unknown_tokens import unknown_token
+from recovery.induction.unknown_tokens import unknown_tokens
 from recovery.language import CorpusFile, Language
 from recovery.negatives.negatives import NegativeSet
 from recovery.proposals.edit_site import LinePattern
@@ -413,15 +413,16 @@ class Induction:
             if step and self.shown.gains(self.grammar, [step]):
                 self._tried.add(edit)  # else lines may still fail ahead of it: it is tried again
                 return step
-        unknown = unknown_token(lines, recognizer.lexer, self.grammar.by_name)
-        if unknown is None:
-            return None
-        added: tuple[Edit, ...] = (AddRule(self.grammar.rules[-1].name, unknown.rule),)
-        if unknown.is_value and (values := OperandRules(recognizer).values):
-            added += (AddAlternative(values, unknown.name),)
         enough = least[0], min(INFERRED_FILES, len(self.shown.files))
-        title = f"{unknown.seen[0]} is a token"
-        return self._token_step(title, added, unknown.files, unknown.seen, enough)
+        for unknown in unknown_tokens(lines, recognizer.lexer, self.grammar.by_name):
+            added: tuple[Edit, ...] = (AddRule(self.grammar.rules[-1].name, unknown.rule),)
+            if unknown.is_value and (values := OperandRules(recognizer).values):
+                added += (AddAlternative(values, unknown.name),)
+            title = f"{unknown.seen[0]} is a token"
+            step = self._token_step(title, added, unknown.files, unknown.seen, enough)
+            if step:
+                return step
+        return None
 
     def _token_step(
         self,

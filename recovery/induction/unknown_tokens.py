@@ -29,14 +29,14 @@ class UnknownToken:
     seen: tuple[str, ...]
 
 
-def unknown_token(
+def unknown_tokens(
     lines: Iterable[tuple[str, int]], lexer: Lexer, known: Collection[str]
-) -> UnknownToken | None:
-    """Return the most frequent unknown token of lines, ``None`` without unknown characters.
+) -> Iterator[UnknownToken]:
+    """Yield the unknown tokens of lines: quotes first, those of most files first.
 
     Each of ``lines`` comes with the number of its file. A character that nearly all lines have in
     pairs with no operand against the outside is a quote. Other ones that are always side by side
-    are one sign. The name of the token is none of the ``known`` names.
+    are one sign. No token has one of the ``known`` names.
     """
     having: dict[str, set[int]] = defaultdict(set)
     paired: dict[str, list[bool]] = defaultdict(list)
@@ -52,20 +52,50 @@ def unknown_token(
         for part in sign:
             having[part] |= having[sign]
         del having[sign]
-    if not having:
-        return None
     quotes = {sign for sign in single if mean(paired[sign]) >= INFERRED_SHARE}
-    best = max(quotes or having, key=lambda s: (len(having[s]), s))
-    name = re.sub(r"\W", "_", "_".join(unicodedata.name(c, "sign") for c in best)).upper()
-    written = "'{}'".format(_escaped(best, "'"))
-    texts: list[str] = []
-    if best in quotes:
-        texts = [text for line, _ in every for text in _inside(line, best) or ()]
-        name, written = f"{name}_TEXT", f"{written} {_content(texts, best)} {written}"
-    seen = tuple(dict.fromkeys(f"{best}{text}{best}" for text in texts)) or (best,)
+    for sign in sorted(having, key=lambda s: (s in quotes, len(having[s]), s), reverse=True):
+        name = re.sub(r"\W", "_", "_".join(unicodedata.name(c, "sign") for c in sign)).upper()
+        if sign in quotes:
+            yield from _texts_in_quotes(every, sign, lexer, f"{name}_TEXT", known)
+        else:
+            written = "'{}'".format(_escaped(sign, "'"))
+            yield _token(name, written, known, False, having[sign], [sign])
+
+
+def _texts_in_quotes(
+    lines: Iterable[tuple[str, int]], quote: str, lexer: Lexer, name: str, known: Collection[str]
+) -> Iterator[UnknownToken]:
+    """Yield tokens for what lines have between quotes, by the kind of its first character.
+
+    Texts that begin otherwise are something else: a number to base 2 is no character.
+    """
+    groups: dict[str, list[tuple[str, int]]] = defaultdict(list)
+    for line, file in lines:
+        for text in _inside(line, quote) or ():
+            groups[_beginning(text)].append((text, file))
+    written = "'{}'".format(_escaped(quote, "'"))
+    found = []
+    for group in groups.values():
+        content = _content([text for text, _ in group], quote)
+        quoted = [(f"{quote}{text}{quote}", file) for text, file in group]
+        new = [(text, file) for text, file in quoted if lexer.kinds[text] == ERROR]
+        files = {file for _, file in new}
+        seen = [text for text, _ in new]
+        found.append(_token(name, f"{written} {content} {written}", known, True, files, seen))
+    yield from sorted((one for one in found if one.files), key=lambda one: -len(one.files))
+
+
+def _token(
+    name: str,
+    written: str,
+    known: Collection[str],
+    is_value: bool,
+    files: Iterable[int],
+    seen: Iterable[str],
+) -> UnknownToken:
     name = next(n for n in chain([name], (f"{name}_{n}" for n in count(2))) if n not in known)
-    rule = f"{name} : {written} ;"
-    return UnknownToken(name, rule, best in quotes, frozenset(having[best]), seen)
+    texts = tuple(dict.fromkeys(seen))
+    return UnknownToken(name, f"{name} : {written} ;", is_value, frozenset(files), texts)
 
 
 def _signs(line: str, lexer: Lexer) -> Iterator[str]:
@@ -121,16 +151,28 @@ def _content(texts: Sequence[str], quote: str) -> str:
     some = "".join(sorted(set(digits)))
     is_part = comb(10, len(some)) * (len(some) / 10) ** len(digits) < UNLIKELY
     letters = "A-Za-z" if any(map(str.isalpha, characters)) else ""
-    chosen = f"{letters}{some if is_part else '0-9' if digits else ''}"
-    written = [begun and "'{}'".format(_escaped(begun, "'"))]
+    numerals = some if is_part else "0-9" if digits else ""
     blank = _escaped("".join(signs), "]-")
-    if signs and chosen:  # no text has signs and blanks alone
+    inner = f"[{letters}{numerals}{blank}]"
+    beginnings = set(map(_beginning, several))
+    if beginnings == {"letter"} and not begun:
+        return f"[{letters}] {inner}*"
+    if beginnings == {"digit"} and not begun:
+        return f"[{numerals}] {inner}*"
+    written = [begun and "'{}'".format(_escaped(begun, "'"))]
+    if signs and (letters or numerals):  # no text has signs and blanks alone
         first = f"[{blank}]* " if any(not text[:1].isalnum() for text in rest if text) else ""
-        some = f"{first}[{chosen}] [{chosen}{blank}]*"
+        some = f"{first}[{letters}{numerals}] {inner}*"
         written.append(f"({some})?" if "" in rest else some)
     else:
-        written.append(f"[{chosen}{blank}]{'*' if '' in rest else '+'}")
+        written.append(f"{inner}{'*' if '' in rest else '+'}")
     return " ".join(filter(None, written))
+
+
+def _beginning(text: str) -> str:
+    """Return with what a text begins: "letter", "digit" or "other"."""
+    first = text[:1] if text.isascii() else ""
+    return "letter" if first.isalpha() else "digit" if first.isdigit() else "other"
 
 
 def _common_start(texts: Collection[str]) -> str:

@@ -7,7 +7,7 @@ from grammar.notation.model import Grammar
 from grammar.parser.lexer import lexer_of
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.rounds import Induction
-from recovery.induction.unknown_tokens import unknown_token
+from recovery.induction.unknown_tokens import unknown_tokens
 from recovery.language import CorpusFile
 from recovery.negatives.negatives import NegativeSet
 
@@ -22,7 +22,7 @@ from recovery.negatives.negatives import NegativeSet
         (["X && Y", "&X"], "AMPERSAND : '&' ;", ("&",)),  # it is a sign of its own, too
         (
             ["X := 'a b'", "Y('C1')"],
-            "APOSTROPHE_TEXT : '\\'' [A-Za-z0-9] [A-Za-z0-9 ]* '\\'' ;",
+            "APOSTROPHE_TEXT : '\\'' [A-Za-z] [A-Za-z0-9 ]* '\\'' ;",
             ("'a b'",),
         ),
         (
@@ -30,14 +30,15 @@ from recovery.negatives.negatives import NegativeSet
             "APOSTROPHE_TEXT : '\\'' 'B' [ ]* [01] [01 ]* '\\'' ;",
             ("'B 110'",),
         ),
-        (["X := 'n1'", "X := 'n10'"], "APOSTROPHE_TEXT : '\\'' [A-Za-z0-9]+ '\\'' ;", ("'n1'",)),
+        (["X := 'n1'"] * 2, "APOSTROPHE_TEXT : '\\'' [A-Za-z] [A-Za-z0-9]* '\\'' ;", ("'n1'",)),
+        (["X := '5'"], "APOSTROPHE_TEXT : '\\'' [0-9] [0-9]* '\\'' ;", ("'5'",)),
         (["X := 'a-b, c!'"], "APOSTROPHE_TEXT : '\\'' ~['\\r\\n]* '\\'' ;", ("'a-b, c!'",)),
     ],
 )
 def test_signs_and_quotes(toy: Grammar, lines: list[str], rule: str, seen: tuple[str, ...]) -> None:
     """Characters in pairs around other text are quotes; those side by side are one sign."""
-    found = unknown_token([(line, n) for n, line in enumerate(lines)], lexer_of(toy), toy.by_name)
-    assert found is not None
+    every = [(line, n) for n, line in enumerate(lines)]
+    found = next(unknown_tokens(every, lexer_of(toy), toy.by_name))
     assert (rule, seen[0]) == (found.rule, found.seen[0])
     assert found.is_value == ("TEXT" in rule)
     read(f"{toy.text}\n{rule}\n")
@@ -45,11 +46,26 @@ def test_signs_and_quotes(toy: Grammar, lines: list[str], rule: str, seen: tuple
 
 def test_no_letter_is_a_sign(toy: Grammar) -> None:
     """A letter that names lack, and what is known, is no token."""
-    assert unknown_token([("\xc4RGER := 1", 0)], lexer_of(toy), toy.by_name) is None
+    assert list(unknown_tokens([("\xc4RGER := 1", 0)], lexer_of(toy), toy.by_name)) == []
     taken = {*toy.by_name, "AMPERSAND"}
-    found = unknown_token([("A & B", 0)], lexer_of(toy), taken)
-    assert found is not None
+    (found,) = unknown_tokens([("A & B", 0)], lexer_of(toy), taken)
     assert found.rule == "AMPERSAND_2 : '&' ;"
+
+
+def test_texts_that_begin_otherwise_are_other_tokens(toy: Grammar) -> None:
+    """Letters and digits in quotes are told apart, and each sign has its own token."""
+    lines = [("X := 'B 110'", 0), ("X := 'B 01'", 1), ("PUT('5') @ Y", 1)]
+    found = list(unknown_tokens(lines, lexer_of(toy), toy.by_name))
+    assert [("'B 110'", "'B 01'"), ("'5'",), ("@",)] == [token.seen for token in found]
+    assert [{0, 1}, {1}, {1}] == [token.files for token in found]
+
+
+def test_a_known_token_is_not_found_again(toy: Grammar) -> None:
+    """Where other texts in the same quotes are unknown, only these are new."""
+    lines = [("X := 'B 110'", 0), ("X := 'B 01'", 1), ("PUT('5')", 1)]
+    first, *_ = unknown_tokens(lines, lexer_of(toy), toy.by_name)
+    (found,) = unknown_tokens(lines, lexer_of(read(f"{toy.text}\n{first.rule}\n")), toy.by_name)
+    assert ("'5'",) == found.seen
 
 
 @pytest.mark.parametrize(("origins", "accepted"), [("ABC", True), ("A", False)])
