@@ -63,6 +63,7 @@ check: $(DEV)
 	@$(BIN)/python -m grammar.notation.generate --check
 	@$(BIN)/python -m krl.highlighting --check
 	@$(BIN)/krl construct replay --check
+	@$(BIN)/krl conform --lint
 
 grammar: $(DEV)
 	@command -v java >/dev/null || { echo 'make grammar: ANTLR needs Java, and there is no java on the PATH' >&2; exit 2; }

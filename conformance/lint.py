@@ -61,7 +61,9 @@ _CLAUSE_WORDS: Final = {
 _TIMELESS: Final = frozenset("TYP ARI FCT SCO MSG POS ORI CON".split())
 #: A line that asks for the number of the last error, and one after which that number is another.
 _ASKED: Final = re.compile(r"=.*\$ERR\.NUMBER", re.IGNORECASE)
-_CLEARED: Final = re.compile(r"\s*(ERR_CLEAR\b|ON_ERROR_PROCEED|\$ERR\.NUMBER *=|DEF)", re.IGNORECASE)
+_CLEARED: Final = re.compile(
+    r"\s*(ERR_CLEAR\b|ON_ERROR_PROCEED|\$ERR\.NUMBER *=|DEF)", re.IGNORECASE
+)
 #: ON_ERROR_PROCEED and the motion behind it, on which it has no effect [FCT-12.c].
 _UNHEEDED: Final = re.compile(
     r"^ *ON_ERROR_PROCEED *(?:;.*)?\n *S?(?:PTP|LIN|CIRC|PTP_SPLINE|SPLINE)(?:_REL)?\b",

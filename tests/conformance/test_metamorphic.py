@@ -110,9 +110,9 @@ def test_each_law_applies_and_holds(law: Law) -> None:
 @pytest.mark.parametrize("loop", ["WHILE N < 5", "FOR I = N TO 5"])
 def test_what_an_error_skips_stays_one_statement(loop: str) -> None:
     """A loop behind ON_ERROR_PROCEED is not written as several statements, but others are."""
-    end = f"END{loop.split()[0]}"
-    text = f"DEF PROG()\nINT I, N\nON_ERROR_PROCEED\n{loop}\n{end}\nN = 9\n{loop}\n{end}\nEND\n"
-    found = [run_law(law, _program(text)) for law in LAWS if "loop" in law.name or "FOR" in law.name]
+    block = f"{loop}\nEND{loop.partition(' ')[0]}\n"
+    program = _program(f"DEF PROG()\nINT I, N\nON_ERROR_PROCEED\n{block}N = 9\n{block}END\n")
+    found = [run_law(law, program) for law in LAWS if "loop" in law.name or "FOR" in law.name]
     tried = [one for one in found if one is not None]
     assert [""] == [one.difference for one in tried]
 
