@@ -27,30 +27,33 @@ from grammar.syntax.walk import walk
 _STRINGS: Final = re.compile(r'"[^"\n]*"|;[^\n]*|&[^\n]*')
 
 
+#: Statements about the line that follows them in the text [ADV-08, FCT-12].
+_ABOUT_NEXT_LINE: Final = ("CONTINUE", "ON_ERROR_PROCEED")
+_OPENING: Final = ("DEF", "DEFFCT", "GLOBAL", *_ABOUT_NEXT_LINE)
+
+
 def _folded(program: Program, random: Random) -> Program | None:
-    """Add comments and folds around statements, but not after CONTINUE, which affects a line."""
+    """Add comments and folds around statements, but not behind what is about the next line."""
     texts = {}
     for source in program.case.sources:
         if source.kind != "src":
             continue
         lines: list[str] = []
-        before = ""
+        is_bound = False
         for line in source.text.splitlines():
-            is_inside = bool(lines) and "CONTINUE" not in before and not _opens(line)
+            is_inside = bool(lines) and not is_bound and not _opens(line)
             if is_inside and random.random() < 0.4:
                 lines += [";FOLD made;%{PE}%R", line, ";ENDFOLD (made)", "", "; a remark"]
             else:
                 lines.append(line)
-            before = line.upper().partition(";")[0]
-            if "CONTINUE" in before:
-                continue
+            is_bound = any(word in line.upper().partition(";")[0] for word in _ABOUT_NEXT_LINE)
         texts[source.path] = "\n".join(lines) + "\n"
     return program.with_texts(texts) if texts else None
 
 
 def _opens(line: str) -> bool:
     words = line.upper().split()
-    return not words or words[0] in ("DEF", "DEFFCT", "GLOBAL", "CONTINUE") or line.startswith("&")
+    return not words or words[0] in _OPENING or line.startswith("&")
 
 
 def _other_case(program: Program, random: Random) -> Program | None:

@@ -82,7 +82,10 @@ class Unit:
 
     @cached_property
     def suppressing(self) -> frozenset[ast.Span]:
-        """The spans of each ON_ERROR_PROCEED with an effect: not on motions and blocks [FCT-12]."""
+        """The spans of each ON_ERROR_PROCEED with an effect.
+
+        It is about the next line, unless that is a motion or a block [FCT-12].
+        """
         nodes = walk(self.module.syntax) if self.module.syntax else ()
         lists = chain.from_iterable(map(bodies, nodes))
         return frozenset(
@@ -92,6 +95,7 @@ class Unit:
             if isinstance(one, ast.OnErrorProceed)
             and not isinstance(following, ast.Motion | ast.EmilyMotion)
             and type(following) not in BODIES
+            and self.line(following) == self.line(one) + 1
         )
 
     def found(self, name: ast.Name) -> Found | None:
