@@ -64,7 +64,7 @@ _ASKED: Final = re.compile(r"=.*\$ERR\.NUMBER", re.IGNORECASE)
 _CLEARED: Final = re.compile(
     r"\s*(ERR_CLEAR\b|ON_ERROR_PROCEED|\$ERR\.NUMBER *=|DEF)", re.IGNORECASE
 )
-#: ON_ERROR_PROCEED and the motion behind it, on which it has no effect [FCT-12.c].
+#: ON_ERROR_PROCEED and the motion behind it, to which it may not apply [FCT-12.d].
 _UNHEEDED: Final = re.compile(
     r"^ *ON_ERROR_PROCEED *(?:;.*)?\n *S?(?:PTP|LIN|CIRC|PTP_SPLINE|SPLINE)(?:_REL)?\b",
     re.IGNORECASE | re.MULTILINE,
@@ -283,7 +283,7 @@ def _error_defects(case: Case) -> Iterator[str]:
     for source in case.sources:
         if case.may_fail and (found := _UNHEEDED.search(source.text)):
             number = source.text.count("\n", 0, found.end()) + 1
-            yield f"line {number}: ON_ERROR_PROCEED has no effect on a motion [FCT-12.c]"
+            yield f"line {number}: ON_ERROR_PROCEED may not apply to a motion [FCT-12.d]"
         asked = 0
         for number, line in enumerate(source.text.splitlines(), start=1):
             if _CLEARED.match(line):

@@ -11,13 +11,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import field, replace
 from functools import cached_property
-from itertools import chain, pairwise
+from itertools import chain
 
 from grammar.check.analysis.context import placed
 from grammar.check.analysis.spelling import spelling_of
 from grammar.check.names.unresolved_name import Files
 from grammar.check.project.framework import Checked, check_module, check_project, typed_module
 from grammar.diagnostics.syntax_errors.findings import syntax_findings
+from grammar.semantics.error_suppression import suppressions
 from grammar.semantics.link import File, Project, extended, link
 from grammar.semantics.scopes import Found, Module, Scope
 from grammar.semantics.symbols import ImportSymbol, Kind, RoutineTable, Symbol
@@ -25,7 +26,7 @@ from grammar.semantics.types import Array, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
-from grammar.syntax.walk import BODIES, bodies, walk
+from grammar.syntax.walk import bodies, walk
 from interp.standins.completion import LIST_OF_ONE, StandIn, complete
 from interp.standins.missing_returns import with_returns
 from interp.standins.unreadable_lines import Readable, readable
@@ -82,21 +83,11 @@ class Unit:
 
     @cached_property
     def suppressing(self) -> frozenset[ast.Span]:
-        """The spans of each ON_ERROR_PROCEED with an effect.
-
-        It is about the next line, unless that is a motion or a block [FCT-12].
-        """
+        """The spans of each ON_ERROR_PROCEED with an effect [FCT-12]."""
         nodes = walk(self.module.syntax) if self.module.syntax else ()
-        lists = chain.from_iterable(map(bodies, nodes))
-        return frozenset(
-            one.span
-            for body in lists
-            for one, following in pairwise(each for each in body if not isinstance(each, ast.Label))
-            if isinstance(one, ast.OnErrorProceed)
-            and not isinstance(following, ast.Motion | ast.EmilyMotion)
-            and type(following) not in BODIES
-            and self.line(following) == self.line(one) + 1
-        )
+        lists = [body for node in nodes for body in bodies(node)]
+        every = chain.from_iterable(suppressions(body, self.line) for body in lists)
+        return frozenset(node.span for node, _, has_effect in every if has_effect)
 
     def found(self, name: ast.Name) -> Found | None:
         """Return what a name in this file refers to, or ``None`` if that is unknown."""

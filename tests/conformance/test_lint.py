@@ -71,7 +71,7 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
         (
             *("control/good.src", "HALT ;"),
             "ON_ERROR_PROCEED\n  PTP_REL {A1 500}\n  HALT ;",
-            "line 6: ON_ERROR_PROCEED has no effect on a motion",
+            "line 6: ON_ERROR_PROCEED may not apply to a motion",
         ),
         ("control/good.src", "runs 1", "halt", "CTL-01 says nothing of"),
         ("control/good.src", "runs 1", "lasts 2", "no rule says how long"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
@@ -11,6 +12,7 @@ from grammar.check.analysis.statement_heads import head, line_of
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.diagnostics.did_you_mean import did_you_mean, one_of
 from grammar.diagnostics.typos import Series, Typos
+from grammar.semantics.error_suppression import suppressions
 from grammar.semantics.rules import is_confirmed
 from grammar.syntax import ast
 
@@ -32,6 +34,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
         yield from _gotos(context, routine, own, homes)
         yield from _end(context, routine)
         yield from _never_reached(context, routine)
+        yield from _not_suppressed(context, routine)
 
 
 def _finding(
@@ -234,3 +237,24 @@ def _unreachable(context: Context, step: FlowNode, before: FlowNode | None) -> D
     line = line_of(source, before.statement)
     message = f"this is never reached: the program does not continue after line {line}"
     return context.finding("unreachable", head(source, step.statement), message)
+
+
+# --------------------------------------------------------------------------- ON_ERROR_PROCEED
+
+
+def _not_suppressed(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    statements = (placed.statement for placed in routine.statements)
+    for node, behind, has_effect in suppressions(statements, partial(line_of, context.source)):
+        if has_effect:
+            continue
+        source, reason = context.source, "nothing on the next line can fail"
+        if behind is not None and line_of(source, behind) == line_of(source, node) + 1:
+            reason = f"it does not apply to {source.text[slice(*behind.span)].split()[0].upper()}"
+        yield _finding(
+            context,
+            "proceed-lost",
+            node,
+            "ON_ERROR_PROCEED has no effect",
+            "FCT-12",
+            reason=reason,
+        )
