@@ -11,6 +11,7 @@ from interp.port.executor import Executor
 from interp.port.requests import (
     CodeHandle,
     DeclareInterrupt,
+    EmptyError,
     End,
     Fail,
     Halt,
@@ -291,8 +292,10 @@ def test_unwind_while_a_fault_is_noted(make: Make) -> None:
         None,
         recorder,
     )
+    assert isinstance(executor.advance(), EmptyError)
     assert isinstance(executor.advance(), Write)
     executor.unwind(0)
+    assert isinstance(executor.advance(), EmptyError)
     assert isinstance(executor.advance(), Write)
     assert isinstance(executor.advance(), End)
     assert [3, 4] == [
