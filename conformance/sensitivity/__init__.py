@@ -1,7 +1,8 @@
 """Mutation testing of the cases: faults are put into the executors, one at a time, and noticed.
 
-``survivors.tsv`` is what `krl bench conform --mutants 240 --seed 1795991311 --group none
---survivors` left over of 240 mutants that had not been seen, of the code of November 29, 2026.
+``survivors.tsv`` is what `krl bench conform --group none --survivors` left over of 1,000 mutants
+that had not been seen: `--mutants 400 --seed 1796000382` and `--mutants 300 --seed 1796001702
+--seed 1796001703`, of the code of November 30, 2026.
 
 A case notices a fault if it passes without it and does not pass with it.
 """
