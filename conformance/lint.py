@@ -244,8 +244,7 @@ def _periods(case: Case) -> Iterator[str]:
     if not is_timed or re.search(r"\bWAIT +FOR\b", code, re.IGNORECASE):
         return
     for one in case.expectations:
-        is_hard = not case.unconfirmed and basis(one.basis or case.basis or case.rules[0]).may_fail
-        if one.file.lower().endswith(".sub") and is_hard and not one.is_absence:
+        if one.file.lower().endswith(".sub") and case.is_sure(one) and not one.is_absence:
             yield f"{one.file}:{one.line}: a submit program has no period: WAIT FOR what it does"
 
 

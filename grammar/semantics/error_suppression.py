@@ -12,13 +12,13 @@ from grammar.syntax.walk import BODIES
 def suppressions(
     statements: Iterable[ast.Node], line: Callable[[ast.Node], int]
 ) -> Iterator[tuple[ast.OnErrorProceed, ast.Node | None, bool]]:
-    """Yield each ON_ERROR_PROCEED, the statement behind it, and whether it has an effect there.
+    """Yield each ON_ERROR_PROCEED, the statement on the next line, and whether it has an effect.
 
-    ``statements`` are in the order of the text, those in blocks behind the first line of the block.
-    It has none on blocks, and on what is not on the next line [FCT-12].
+    ``statements`` are in the order of the text: those of one list, or those of a block behind its
+    first line. It has no effect on a block, nor where the next line has no statement [FCT-12].
     """
     for one, behind in pairwise((*statements, None)):
         if isinstance(one, ast.OnErrorProceed):
-            is_next = behind is not None and line(behind) == line(one) + 1
-            is_exempt = isinstance(behind, ast.Label) or type(behind) in BODIES
-            yield one, behind, is_next and not is_exempt
+            following = behind if behind and line(behind) == line(one) + 1 else None
+            is_exempt = isinstance(following, ast.Label) or type(following) in BODIES
+            yield one, following, following is not None and not is_exempt

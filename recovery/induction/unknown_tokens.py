@@ -135,7 +135,7 @@ def _inside(line: str, quote: str) -> list[str] | None:
 
 
 def _content(texts: Sequence[str], quote: str) -> str:
-    """Return what a lexer rule writes for texts between quotes.
+    """Return what a lexer rule writes for texts between quotes, which begin with the same kind.
 
     Several texts that begin alike have that beginning. Digits that are unlikely to be missing by
     chance are left out: a binary number has no 2.
@@ -154,11 +154,9 @@ def _content(texts: Sequence[str], quote: str) -> str:
     numerals = some if is_part else "0-9" if digits else ""
     blank = _escaped("".join(signs), "]-")
     inner = f"[{letters}{numerals}{blank}]"
-    beginnings = set(map(_beginning, several))
-    if beginnings == {"letter"} and not begun:
-        return f"[{letters}] {inner}*"
-    if beginnings == {"digit"} and not begun:
-        return f"[{numerals}] {inner}*"
+    firsts = {"letter": letters, "digit": numerals}.get(_beginning(texts[0]))
+    if firsts and not begun:
+        return f"[{firsts}] {inner}*"
     written = [begun and "'{}'".format(_escaped(begun, "'"))]
     if signs and (letters or numerals):  # no text has signs and blanks alone
         first = f"[{blank}]* " if any(not text[:1].isalnum() for text in rest if text) else ""

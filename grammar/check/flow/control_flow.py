@@ -243,13 +243,15 @@ def _unreachable(context: Context, step: FlowNode, before: FlowNode | None) -> D
 
 
 def _not_suppressed(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+    source = context.source
     statements = (placed.statement for placed in routine.statements)
-    for node, behind, has_effect in suppressions(statements, partial(line_of, context.source)):
+    for node, following, has_effect in suppressions(statements, partial(line_of, source)):
         if has_effect:
             continue
-        source, reason = context.source, "nothing on the next line can fail"
-        if behind is not None and line_of(source, behind) == line_of(source, node) + 1:
-            reason = f"it does not apply to {source.text[slice(*behind.span)].split()[0].upper()}"
+        reason = "nothing on the next line can fail"
+        if following is not None:
+            word = source.text[slice(*following.span)].split()[0].upper()
+            reason = f"it does not apply to {word}"
         yield _finding(
             context,
             "proceed-lost",
