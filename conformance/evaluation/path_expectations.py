@@ -33,6 +33,8 @@ from conformance.evaluation.path_geometry import (
 from conformance.evaluation.trace_expectations import Evaluated, Marks, time_of
 from conformance.suite.expectations import Expectation
 from interp.robot.kinematics.kinematics import matrix_of
+from interp.robot.kinematics.machine_data import ROBOT_AXES
+from interp.robot.kinematics.placement import Placement
 from interp.robot.simulation.tracking import PathRecord
 from interp.values.poses import Pose
 
@@ -71,6 +73,28 @@ class _MotionPath:
     def at(self, time: float) -> Array:
         """Return X, Y and Z of the tool at a time in µs."""
         return between(self.path.times, self.points, time)
+
+    def poses(self, rows: npt.NDArray[np.int64], time: float) -> Array:
+        """Return X to C of the tool at samples, all with the frames in force at a time in µs.
+
+        At the end of the motion these are its own. Angles are unwrapped, for interpolation.
+        """
+        moment = self.start if not self.is_whole and self.start <= time <= self.end else time
+        poses, wanted = self.path.points[rows], self._placement(moment)
+        for row, pose in zip(rows, poses, strict=True):
+            own, externals = (
+                self._placement(self.path.times[row]),
+                self.path.axes[row, ROBOT_AXES:].tolist(),
+            )
+            if own != wanted:
+                flange = own.at(externals).flange(Pose.of(*pose))
+                pose[:] = wanted.at(externals).point(flange).components
+        return np.hstack((poses[:, :3], np.unwrap(poses[:, 3:], period=360.0, axis=0)))
+
+    def _placement(self, time: float) -> Placement:
+        """Return the frames in force at a time in µs; a recording may not know any."""
+        placed = (one for start, one in reversed(self.path.placements) if start <= time)
+        return next(placed, Placement())
 
     def own(self) -> Array:
         """Return the samples of the tool between the blends."""
@@ -247,8 +271,10 @@ def _position(one: Expectation, seen: Observation, part: _MotionPath, marks: Mar
         except LookupError as error:
             return "unmet", str(error.args[0])
     wanted = _numbers(one)
-    rows = part.path.axes if one.kind == "axes" else _continuous(part.path.points)
-    found = between(part.path.times, rows, moment)[: len(wanted)]
+    at = int(np.searchsorted(part.path.times, moment))
+    near = np.arange(max(at - 4, 0), min(at + 4, len(part.path.times)))
+    rows = part.path.axes[near] if one.kind == "axes" else part.poses(near, moment)
+    found = between(part.path.times[near], rows, moment)[: len(wanted)]
     off = np.abs(found - wanted)
     if one.kind == "pose":  # an angle and one a turn further are the same
         off[3:] = np.abs((found[3:] - wanted[3:] + 180.0) % 360.0 - 180.0)
@@ -256,11 +282,6 @@ def _position(one: Expectation, seen: Observation, part: _MotionPath, marks: Mar
     usual = TOLERANCE_MM if one.kind == "pose" else TOLERANCE_DEGREES
     margin = usual if one.tolerance is None else one.tolerance
     return ("met" if float(off.max()) <= margin else "unmet"), actual
-
-
-def _continuous(poses: Array) -> Array:
-    """Return poses whose angles are unwrapped, so that they can be interpolated."""
-    return np.hstack((poses[:, :3], np.unwrap(poses[:, 3:], period=360.0, axis=0)))
 
 
 # ------------------------------------------------------------------------------------- speeds

@@ -1,5 +1,6 @@
 """Expectations about paths are evaluated by geometry that stands in the case."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,10 @@ from conformance.evaluation.path_expectations import evaluate_on_path
 from conformance.evaluation.path_geometry import circle_of, drawn, from_arc, from_circle, from_line
 from conformance.evaluation.trace_expectations import Marks
 from conformance.suite.expectations import read_expectation
+from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
 from interp.robot.simulation.tracking import PathRecord
+from interp.values.poses import Pose
 
 NO_MARKS = Marks({}, frozenset())
 CYCLE = 12_000
@@ -121,6 +124,25 @@ def test_pose_is_at_the_end_or_at_a_moment() -> None:
     assert "met" == state("pose 50 0 0 at 0.3", seen(LINE))
     assert "met" == state("pose 100 0 0 at out 1", seen(LINE, out))
     assert "unmet" == state("pose 100 0 0 at out 2", seen(LINE, out))
+
+
+def test_pose_beside_another_base_is_in_the_base_of_its_motion() -> None:
+    """The next motion begins between two samples, in a base that stands aside and is turned."""
+    whole = seen(LINE)
+    assert whole.path is not None
+    later = np.arange(51) > 25
+    points = np.where(
+        later[:, None], [[0, 50 - x, 0, -90, 0, 0] for x, _, _ in LINE], whole.path.points
+    )
+    base = Pose.of(50, 0, 0, 90)
+    frames = (0, Placement()), (306_000, Placement(base, tool=Pose.of(0, 0, 7)))
+    points[later] += [0, 0, 7, 0, 0, 0]
+    events = (event("motion_start", 0, 1), event("motion_end", 306_000, 1))
+    both = replace(whole, events=events, path=replace(whole.path, points=points, placements=frames))
+    assert "met" == state("pose 51 0 0 0 0 0", both)
+    assert "met" == state("pose 50 0 0 0 0 0 at 0.3", both)
+    assert "met" == state("pose 0 -2 7 -90 0 0 at 0.312", both)
+    assert "met" == state("pose 0 -1.5 7 -90 0 0 at 0.309", both)
 
 
 def test_speed_is_that_of_the_tool() -> None:
