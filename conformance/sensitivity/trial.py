@@ -225,6 +225,7 @@ def _outcomes(fault: SeededFault, cases: Candidates, executor: str) -> Iterator[
     resource.setrlimit(resource.RLIMIT_AS, (most, hard))
     runs, changed = 0, ""
     differing: list[tuple[Case, Observation]] = []
+    soft: dict[str, Any] = {}
     setups = [Setup(executor, _ROBOT)]
     if executor == "tree" and fault.module.startswith(_APART) and not missing(_IN_C):
         setups.append(_IN_C)
@@ -232,6 +233,8 @@ def _outcomes(fault: SeededFault, cases: Candidates, executor: str) -> Iterator[
         with fault.plant():
             for runs, one in enumerate(cases.tried, 1):
                 case = one.case
+                if soft and not case.may_fail:
+                    continue
                 fate: Fate | None = "red" if case.may_fail else "soft"
                 yield {"fate": fate, "case": case.name, "why": "the process ended", "runs": runs}
                 seen = observed_within(case, setups[0], _SECONDS)
@@ -240,16 +243,21 @@ def _outcomes(fault: SeededFault, cases: Candidates, executor: str) -> Iterator[
                 differing.append((case, seen))
                 fate, why, by_profile = _noticed(case, seen, setups)
                 if fate:
-                    changed = differing[0][0].name
-                    yield {
+                    found = {
                         "fate": fate,
                         "case": case.name,
                         "why": why,
                         "runs": runs,
-                        "changed": changed,
+                        "changed": differing[0][0].name,
                         "by_profile": by_profile,
                     }
-                    return
+                    if fate == "red":
+                        yield found
+                        return
+                    soft = soft or found
+        if soft:
+            yield {**soft, "runs": runs}
+            return
         for case, seen in differing:
             if not is_alike(seen, observe(case, setups[0])):
                 changed = case.name

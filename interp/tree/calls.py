@@ -133,7 +133,7 @@ class Calls(Expressions):
             if argument is not None and is_out and is_variable(self.frame.unit, argument):
                 place = yield from self.place(argument)
                 value = yield from self.read(place)
-                if value is None and is_left_out(place):
+                if is_left_out(place):
                     raise fault("uninitialised")
             elif argument is not None and name in BUILTINS and reads_text(type_):
                 value = yield from self._text(argument, type_)
@@ -152,8 +152,7 @@ class Calls(Expressions):
             return (yield from self.value(node, wanted))
         place = yield from self.place(node)
         value = yield from self.read(place)
-        is_empty = value is None and is_left_out(place) and reads_text(place.type)
-        return "" if is_empty else known(value)
+        return "" if is_left_out(place) and reads_text(place.type) else known(value)
 
 
 _Argument = tuple[PredefinedParameter, ast.Expression | None, Place | None, Value | None]

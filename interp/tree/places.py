@@ -92,10 +92,7 @@ def fresh(type_: Type, name: str) -> LocalPlace:
 def is_left_out(place: Place) -> bool:
     """Return whether a place is an array parameter ``X[]`` that the caller omitted."""
     return (
-        isinstance(place, LocalPlace)
-        and isinstance(place.type, Array)
-        and None in place.type.sizes
-        and place.get() is None
+        isinstance(place, LocalPlace) and isinstance(place.type, Array) and None in place.type.sizes
     )
 
 

@@ -33,19 +33,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 
-from grammar.semantics.predefined import System
-from grammar.semantics.types import INT, INT_MAX, Enumeration, Structure
+from grammar.semantics.types import INT, INT_MAX
 from interp.values.faults import fault
+from interp.values.predefined_values import empty_structure, word
 from interp.values.texts import DECIMAL, INTEGER, Outcome, integer_of, real_of
 from interp.values.values import (
     ArrayValue,
     EnumValue,
     StructureValue,
     Value,
-    constant,
     converted,
     copied,
-    empty,
     known,
     text_of,
 )
@@ -85,15 +83,10 @@ def _count(digits: str | None) -> int | None:
 # ------------------------------------------------------------------------------- STATE
 
 
-def _state(word: str, hits: int, length: int) -> StructureValue:
+def state_value(result: str, hits: int = 0, length: int = 0) -> StructureValue:
     """Return a STATE_T with the result and the numbers of conversions and characters [FCT-08]."""
-    types = System.load().types
-    structure, results = types["STATE_T"], types["CMD_STAT"]
-    assert isinstance(structure, Structure)
-    assert isinstance(results, Enumeration)
-    value = empty(structure)
-    assert isinstance(value, StructureValue)
-    value.set("RET1", constant(results, word))
+    value = empty_structure("STATE_T")
+    value.set("RET1", word("CMD_STAT", result))
     value.set("MSG_NO", 0)
     value.set("HITS", hits)
     value.set("LENGTH", length)
@@ -117,9 +110,9 @@ def swrite(
     start = converted(known(offset), INT)
     assert isinstance(start, int)
     if not 0 <= start <= len(target):
-        return None, {1: _state("CMD_ABORT", 0, 0)}
+        return None, {1: state_value("CMD_ABORT")}
     text: ArrayValue = copied(target)
-    end, hits, word = start, 0, "CMD_OK"
+    end, hits, result = start, 0, "CMD_OK"
     left = list(values)
     try:
         for piece in _pieces(text_of(pattern)):
@@ -139,8 +132,8 @@ def swrite(
         if left:
             raise _Mismatch
     except _Mismatch:
-        word = "FMT_ERR"
-    return None, {0: text, 1: _state(word, hits, end - start), 2: end}
+        result = "FMT_ERR"
+    return None, {0: text, 1: state_value(result, hits, end - start), 2: end}
 
 
 def _written(specification: _Specification, value: Value) -> str:
@@ -225,9 +218,9 @@ def sread(
     start = converted(known(offset), INT)
     assert isinstance(start, int)
     if not 0 <= start <= len(given):
-        return None, {1: _state("CMD_ABORT", 0, 0)}
+        return None, {1: state_value("CMD_ABORT")}
     changes: dict[int, Value] = {}
-    end, word = start, "CMD_OK"
+    end, result = start, "CMD_OK"
     try:
         for piece in _pieces(text_of(pattern)):
             if isinstance(piece, str):
@@ -240,9 +233,9 @@ def sread(
         if len(changes) != len(variables):
             raise _Mismatch
     except _Mismatch:
-        word = "FMT_ERR"
+        result = "FMT_ERR"
     hits = len(changes)
-    return None, {1: _state(word, hits, end - start), 2: end, **changes}
+    return None, {1: state_value(result, hits, end - start), 2: end, **changes}
 
 
 def _skipped(text: str, place: int, expected: str) -> int:

@@ -327,6 +327,17 @@ def test_a_mutant_that_makes_a_case_fail() -> None:
 
 
 @needs_fork
+def test_a_case_that_is_not_sure_does_not_end_the_trial() -> None:
+    """Two dialogues at a time are our reading; that one is answered by its button is not."""
+    names = ("message/answer_beside_message", "message/answer_of_dialogue")
+    was, panel = "self._messages.answer(button)", "interp.controller.inputs.operator_panel"
+    mutant = _mutant(panel, "OperatorPanel.answer", was, "pass")
+    reaches = reach_of([_case(name) for name in names], _SETUP)
+    found = [try_faults([mutant], reaches[:count])[0] for count in (1, 2)]
+    assert [("soft", names[0]), ("red", names[1])] == [(one.fate, one.case) for one in found]
+
+
+@needs_fork
 def test_a_case_that_takes_too_long_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
     """So much computing is more than any case may take where it may take next to none."""
     monkeypatch.setattr(trial, "_SECONDS", 1e-6)

@@ -17,14 +17,12 @@ from typing import Final
 from grammar.semantics.types import CHAR, REAL, Array
 from interp.controller.state.clock import Clock, microseconds
 from interp.controller.state.messages import own_fault
-from interp.controller.state.predefined_values import empty_structure, word
 from interp.port.requests import Value
 from interp.values.faults import fault
-from interp.values.formats import LONGEST, sread, swrite
+from interp.values.formats import LONGEST, sread, state_value, swrite
 from interp.values.values import (
     ArrayValue,
     EnumValue,
-    StructureValue,
     converted,
     empty,
     known,
@@ -38,16 +36,6 @@ _READ_VARIABLES: Final = 6
 _WRITTEN_VALUES: Final = 4
 #: Variables that contain the handle of a channel that is open from the start.
 COMMANDS: Final = ("$CMD", "$FCT_CALL")
-
-
-def state_value(result: str, hits: int = 0, length: int = 0) -> StructureValue:
-    """Return a STATE_T with a result and the numbers of conversions and characters [FCT-08]."""
-    value = empty_structure("STATE_T")
-    value.set("RET1", word("CMD_STAT", result))
-    value.set("MSG_NO", 0)
-    value.set("HITS", hits)
-    value.set("LENGTH", length)
-    return value
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +99,7 @@ class Channels:
         pattern, values = known(arguments[3]), [known(one) for one in arguments[4:]]
         if not values:
             text = text_of(pattern)
-            state: Value = state_value("CMD_OK", 0, len(text))
+            state: Value = state_value("CMD_OK", length=len(text))
         else:
             _, changes = swrite(target, None, 0, pattern, *values)
             state = changes[1]

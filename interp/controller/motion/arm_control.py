@@ -69,7 +69,7 @@ class ArmControl:
 
     def changed(self, path: Path, value: Value) -> None:
         """Note an assignment to a system variable: $OV_PRO takes effect at once."""
-        if path[0] == "$OV_PRO" and isinstance(value, int | float) and not self._is_held:
+        if path == ("$OV_PRO",) and isinstance(value, int | float) and not self._is_held:
             self.core.override(self._clock.now, float(value))
 
     def _apply_override(self) -> None:

@@ -13,7 +13,6 @@ from functools import cached_property, partial
 from itertools import chain, repeat
 from typing import TYPE_CHECKING, Any, Final
 
-from interp.controller.state.predefined_values import empty_structure
 from interp.controller.state.state import ControllerState
 from interp.controller.state.variables import Computed, Snapshot, Variables
 from interp.port.requests import Path, Value
@@ -30,6 +29,7 @@ from interp.robot.kinematics.machine_data import (
 from interp.robot.kinematics.placement import IpoMode, Placement
 from interp.values.faults import fault
 from interp.values.poses import IDENTITY, Pose
+from interp.values.predefined_values import empty_structure
 from interp.values.values import EnumValue, StructureValue, single
 
 if TYPE_CHECKING:

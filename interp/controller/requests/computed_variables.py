@@ -8,7 +8,6 @@ from functools import partial
 
 from interp.controller.inputs.channels import COMMANDS, Channels
 from interp.controller.motion.motion_queue import MotionQueue
-from interp.controller.state.predefined_values import empty_structure, word
 from interp.controller.state.signals import Signals
 from interp.controller.state.state import ControllerState
 from interp.controller.state.timers import date_members
@@ -16,6 +15,7 @@ from interp.controller.state.trace import TaskName
 from interp.controller.state.variables import Computed
 from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
+from interp.values.predefined_values import empty_structure, word
 from interp.values.values import single
 
 

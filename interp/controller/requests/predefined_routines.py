@@ -23,7 +23,6 @@ from interp.controller.motion.positions import (
     word_of,
 )
 from interp.controller.state.messages import message_fault, own_fault
-from interp.controller.state.predefined_values import empty_structure
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import Invoke, Path, Value
@@ -33,6 +32,7 @@ from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
 from interp.robot.kinematics.placement import Placement
 from interp.values.faults import Fault, fault
 from interp.values.poses import Pose
+from interp.values.predefined_values import empty_structure
 from interp.values.texts import Outcome
 from interp.values.values import (
     EnumValue,

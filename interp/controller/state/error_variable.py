@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from interp.controller.state.declared_interrupts import module_name
-from interp.controller.state.predefined_values import word
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Task
 from interp.controller.state.trace import TaskName
 from interp.port.requests import Write
+from interp.values.predefined_values import word
 from interp.values.values import ArrayValue, StructureValue, Value, copied, set_text
 
 #: A program and a depth of its calls.

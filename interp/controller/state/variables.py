@@ -337,9 +337,7 @@ def _is_rest(parent: Any, steps: Path) -> bool:
 def _step(parent: Any, steps: Path, place: int) -> tuple[Any, int]:
     """Go one step into a value, to a member or an element; return it and the next place."""
     step = steps[place]
-    if isinstance(parent, StructureValue) and isinstance(step, str):
-        if parent.type.member(step) is None:
-            raise fault("uninitialised")
+    if isinstance(parent, StructureValue) and isinstance(step, str) and parent.type.member(step):
         return parent.get(step), place + 1
     if isinstance(parent, ArrayValue):
         indices = [one for one in steps[place : place + len(parent.sizes)] if isinstance(one, int)]
