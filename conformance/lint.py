@@ -57,7 +57,7 @@ _CLAUSE_WORDS: Final = {
     "resume": "RESUME",
     "halt": "HALT",
 }
-#: Topics whose rules are about no time, where they do not mention the advance run.
+#: Topics whose rules are about no time, where they mention neither seconds nor the advance run.
 _TIMELESS: Final = frozenset("TYP ARI FCT SCO MSG POS ORI CON".split())
 #: A line that asks for the number of the last error, and one after which that number is another.
 _ASKED: Final = re.compile(r"=.*\$ERR\.NUMBER", re.IGNORECASE)
@@ -219,7 +219,8 @@ def _untimed(clause: Rule | Clause, one: Expectation, when: When) -> str:
     is_in_advance = one.kind == "planned" or (topic == "ADV" and "in step" not in clause.statement)
     if is_in_advance and is_soon:
         return "how soon it is done depends on the computing power [ADV-03]"
-    if topic in _TIMELESS and "advance" not in clause.statement and when.relation != "after":
+    is_timed = "advance" in clause.statement or "seconds" in clause.statement
+    if topic in _TIMELESS and not is_timed and when.relation != "after":
         return f"{clause.id} gives no time"
     return ""
 
