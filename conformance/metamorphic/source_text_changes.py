@@ -128,9 +128,14 @@ def _locals(routine: ast.Routine) -> list[str]:
 def _with_names(routine: ast.Routine, names: dict[str, str]) -> ast.Routine:
     """Rename variables in a routine; members and enumeration constants keep their names."""
 
+    def declared(node: ast.Declarator) -> ast.Declarator:
+        return replace(node, name=name(names.get(node.name.key, node.name.text)))
+
     def change(node: ast.Node) -> ast.Node:
-        if isinstance(node, ast.Variable | ast.Declarator) and node.name.key in names:
+        if isinstance(node, ast.Variable) and node.name.key in names:
             return replace(node, name=name(names[node.name.key]))
+        if isinstance(node, ast.VariableDeclaration):
+            return replace(node, declarators=tuple(map(declared, node.declarators)))
         if isinstance(node, ast.For) and node.counter.key in names:
             return replace(node, counter=name(names[node.counter.key]))
         return node

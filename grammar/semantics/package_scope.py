@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cache
+from typing import Final
 
 from grammar.semantics.packages import PackageParameter, PackageRoutine, load_packages
 from grammar.semantics.scopes import Found, Outer, Scope
@@ -92,6 +93,12 @@ def _of_every_controller() -> Iterator[RoutineSymbol]:
         yield _symbol(name, has_value, (), has_more=True)
 
 
+#: Stands for arguments of which nothing is known.
+_ANYTHING: Final = ParameterSymbol(
+    Kind.PARAMETER, "VALUE", _NO_SPAN, Access.ROUTINE, given=UNKNOWN, mode=""
+)
+
+
 def _routine(routine: PackageRoutine) -> RoutineSymbol:
     has_more = routine.has_more or routine.is_unconfirmed
     return _symbol(routine.name, bool(routine.result), routine.parameters, has_more=has_more)
@@ -108,7 +115,7 @@ def _symbol(
         # working programs receive a value in variables of several types
         given=UNKNOWN if has_value else None,
         parameters=tuple(map(_parameter, parameters)),
-        has_more=has_more,
+        more=_ANYTHING if has_more else None,
     )
 
 

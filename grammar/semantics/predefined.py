@@ -69,28 +69,37 @@ class SystemVariable:
 
 @dataclass(frozen=True, slots=True)
 class PredefinedParameter:
-    """A parameter of a predefined function."""
+    """A parameter of a predefined function; ``mode`` is IN, OUT, or empty if it is not known."""
 
     name: str
     type: Type
-    is_out: bool
+    mode: str
+
+    @property
+    def is_out(self) -> bool:
+        """Whether the function may change the argument."""
+        return self.mode != "IN"
 
 
 @dataclass(frozen=True, slots=True)
 class PredefinedFunction:
     """A predefined routine; ``result`` is ``None`` if it returns no value.
 
-    ``has_more`` says that more arguments of any type can follow. ``stops`` are the rules by which
-    it stops the advance run.
+    ``more`` describes the arguments that can follow those of ``parameters``; ``None`` if none can.
+    ``stops`` are the rules by which it stops the advance run.
     """
 
     name: str
     result: Type | None
     parameters: tuple[PredefinedParameter, ...]
-    has_more: bool
+    more: PredefinedParameter | None
     stops: tuple[str, ...]
     source: tuple[str, ...]
     meaning: str
+
+    def parameter(self, place: int) -> PredefinedParameter | None:
+        """Return the parameter of the argument at ``place``, counted from 0, if it can have one."""
+        return self.parameters[place] if place < len(self.parameters) else self.more
 
     @property
     def is_unconfirmed(self) -> bool:
@@ -274,11 +283,13 @@ class System:
 
     def _function(self, row: _Row) -> PredefinedFunction:
         parameters = _split(row["parameters"], ";")
+        has_more = bool(parameters) and parameters[-1].endswith("...")
+        mode = parameters.pop().removesuffix("...").strip() if has_more else ""
         return PredefinedFunction(
             name=row["name"],
             result=self._named(row["result"]) if row["result"] else None,
-            parameters=tuple(self._parameter(text) for text in parameters if text != "..."),
-            has_more="..." in parameters,
+            parameters=tuple(map(self._parameter, parameters)),
+            more=PredefinedParameter("VALUE", UNKNOWN, mode) if has_more else None,
             stops=tuple(row["stops"].split()),
             source=tuple(row["source"].split()),
             meaning=row["meaning"].removeprefix("-"),
@@ -287,7 +298,7 @@ class System:
     def _parameter(self, text: str) -> PredefinedParameter:
         mode, type_name, word = text.split()
         name, sizes = _indexed(word)
-        return PredefinedParameter(name, self._typed(type_name, sizes), mode == "OUT")
+        return PredefinedParameter(name, self._typed(type_name, sizes), mode)
 
 
 def is_priority(number: float) -> bool:

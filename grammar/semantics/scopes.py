@@ -17,7 +17,7 @@ from dataclasses import field
 from enum import Enum
 from typing import Protocol
 
-from grammar.semantics.predefined import PredefinedFunction, System
+from grammar.semantics.predefined import PredefinedFunction, PredefinedParameter, System
 from grammar.semantics.symbols import (
     Access,
     Kind,
@@ -280,25 +280,19 @@ def _given(kind: Kind, name: str, type_: Type | None) -> Symbol:
 
 
 def _routine(function: PredefinedFunction) -> RoutineSymbol:
-    parameters = tuple(
-        ParameterSymbol(
-            Kind.PARAMETER,
-            parameter.name,
-            _NO_SPAN,
-            Access.ROUTINE,
-            given=parameter.type,
-            mode="OUT" if parameter.is_out else "IN",
+    def parameter(known: PredefinedParameter) -> ParameterSymbol:
+        return ParameterSymbol(
+            Kind.PARAMETER, known.name, _NO_SPAN, Access.ROUTINE, given=known.type, mode=known.mode
         )
-        for parameter in function.parameters
-    )
+
     return RoutineSymbol(
         Kind.ROUTINE,
         function.name,
         _NO_SPAN,
         Access.GLOBAL,
         given=function.result,
-        parameters=parameters,
-        has_more=function.has_more,
+        parameters=tuple(map(parameter, function.parameters)),
+        more=parameter(function.more) if function.more is not None else None,
     )
 
 

@@ -98,7 +98,7 @@ class Symbol:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ParameterSymbol(Symbol):
-    """A parameter. ``mode`` is IN or OUT; the default is OUT [SCO-06].
+    """A parameter. ``mode`` is IN or OUT, empty if it is not known; the default is OUT [SCO-06].
 
     ``is_optional`` is known of routines of option packages: a call can leave it out.
     """
@@ -131,12 +131,16 @@ class RoutineSymbol(Symbol):
     """A routine; ``type`` is that of its result, ``None`` if it returns no value.
 
     EXT and EXTFCT announce routines of other modules; EXTP and EXTFCTP declare routines of the
-    controller that need no file [SCO-10]. ``has_more`` says that more arguments of any type can
-    follow, as in some predefined routines.
+    controller that need no file [SCO-10]. ``more`` describes the arguments that can follow those of
+    ``parameters``, as in some predefined routines; ``None`` if none can.
     """
 
     parameters: tuple[ParameterSymbol, ...] = field(kw_only=True)
-    has_more: bool = field(default=False, kw_only=True)
+    more: ParameterSymbol | None = field(default=None, kw_only=True)
+
+    def parameter(self, place: int) -> ParameterSymbol | None:
+        """Return the parameter of the argument at ``place``, counted from 0, if it can have one."""
+        return self.parameters[place] if place < len(self.parameters) else self.more
 
 
 @dataclass(frozen=True, slots=True, eq=False)

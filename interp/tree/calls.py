@@ -5,11 +5,11 @@ Arguments are evaluated from left to right.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 from grammar.semantics.assignability import assignable
-from grammar.semantics.predefined import PredefinedParameter, System
+from grammar.semantics.predefined import PredefinedFunction, PredefinedParameter, System
 from grammar.semantics.scopes import Found
 from grammar.semantics.types import UNKNOWN, Enumeration, Scalar, Text, Type, is_same
 from grammar.syntax import ast
@@ -101,7 +101,7 @@ class Calls(Expressions):
         function = System.load().functions[name]
         if name in BUILTINS and function.stops:
             yield StopAdvance(self.at())
-        places, values = yield from self._evaluate_arguments(node, function.parameters)
+        places, values = yield from self._evaluate_arguments(node, function)
         if is_value and function.result == UNKNOWN:
             raise untyped_result(name)
         if name in BUILTINS:
@@ -118,7 +118,7 @@ class Calls(Expressions):
         return result
 
     def _evaluate_arguments(
-        self, node: ast.Call, parameters: Sequence[PredefinedParameter]
+        self, node: ast.Call, function: PredefinedFunction
     ) -> Steps[tuple[list[Place | None], list[Value | None]]]:
         """Return the places of the arguments passed :OUT, and the values of all arguments."""
         name = node.name.key
@@ -126,10 +126,9 @@ class Calls(Expressions):
         values: list[Value | None] = []
         for number, argument in enumerate(node.arguments):
             place, value = None, None
-            if number < len(parameters):
-                is_out, type_ = parameters[number].is_out, parameters[number].type
-            else:
-                is_out, type_ = name in WORLD or BUILTINS[name].changes_more, UNKNOWN
+            parameter = function.parameter(number)
+            is_out = parameter.is_out if parameter is not None else name in WORLD
+            type_ = parameter.type if parameter is not None else UNKNOWN
             if argument is not None and is_out and is_variable(self.frame.unit, argument):
                 place = yield from self.place(argument)
                 value = yield from self.read(place)

@@ -188,23 +188,21 @@ def _word(type_name: str, name: str) -> EnumValue:
 class PredefinedFunction:
     """A predefined function that only computes.
 
-    ``has_more`` allows arguments after ``parameters``; ``changes_more`` says that they are passed
-    :OUT. A function that ``uses_surroundings`` receives a `Surroundings` before its arguments.
+    ``more`` describes arguments that can follow those of ``parameters``. A function that
+    ``uses_surroundings`` receives a `Surroundings` before its arguments.
     """
 
     name: str
     function: Callable[..., Outcome]
     parameters: tuple[PredefinedParameter, ...]
-    has_more: bool
-    changes_more: bool
+    more: PredefinedParameter | None
     result: Type | None
     uses_surroundings: bool
 
     def is_out(self, place: int) -> bool:
         """Return whether the function may change its argument at ``place``, counted from 0."""
-        if place < len(self.parameters):
-            return self.parameters[place].is_out
-        return self.changes_more
+        known = self.parameters[place] if place < len(self.parameters) else self.more
+        return known is not None and known.is_out
 
 
 def _plain(function: Callable[..., Any]) -> Callable[..., Outcome]:
@@ -230,8 +228,7 @@ def _builtin(name: str) -> PredefinedFunction:
         name,
         _ASKING.get(name) or _COMPUTING[name],
         known_as.parameters,
-        known_as.has_more,
-        changes_more=name == "SREAD",
+        known_as.more,
         result=known_as.result,
         uses_surroundings=name in _ASKING,
     )
@@ -308,7 +305,7 @@ def call(name: str, arguments: Sequence[Value | None], surroundings: Surrounding
     """
     builtin = BUILTINS[name.upper()]
     least = len(builtin.parameters)
-    if len(arguments) < least or (len(arguments) > least and not builtin.has_more):
+    if len(arguments) < least or (len(arguments) > least and builtin.more is None):
         raise fault("argument")
     given: list[Any] = [
         argument if parameter.is_out else _passed(parameter.type, argument)

@@ -150,11 +150,11 @@ def _variable(variable: SystemVariable) -> list[str]:
 
 
 def _function(function: PredefinedFunction) -> list[str]:
-    listed = ", ".join(
-        f"{one.name}:{'OUT' if one.is_out else 'IN'} {one.type}" for one in function.parameters
-    )
+    parameters = [f"{one.name}:{one.mode} {one.type}" for one in function.parameters]
+    if function.more is not None:
+        parameters.append(f"{function.more.mode} …".lstrip())
     result = f"{function.result} " if function.result is not None else ""
-    lines = [f"```krl\n{result}{function.name}({listed})\n```"]
+    lines = [f"```krl\n{result}{function.name}({', '.join(parameters)})\n```"]
     if function.meaning not in ("", "-"):
         lines.append(function.meaning)
     if function.stops:
@@ -163,13 +163,18 @@ def _function(function: PredefinedFunction) -> list[str]:
 
 
 def _cited(source: Sequence[str], word: str) -> list[str]:
-    """Return the rules in a table row, then those that mention the word, with their tiers."""
+    """Return the rules in a table row, then those that mention the word, with their tiers.
+
+    FOR stands behind another keyword in WAIT FOR: rules of which all mentions are such come last.
+    """
     rules = registry()
     named = re.compile(rf"(?<![\w$]){re.escape(word)}(?!\w)")
+    alone = re.compile(rf"(?<![A-Z]{{2}} ){named.pattern}")
     wanted = [rules[key] for key in source if key in rules]
-    wanted += [
+    mention = [
         rule for rule in rules.values() if rule not in wanted and named.search(rule.statement)
     ]
+    wanted += sorted(mention, key=lambda rule: alone.search(rule.statement) is None)
     return [
         f"**{rule.id}** {rule.statement} *({_tier(rule.tier)})*" for rule in wanted[:_MOST_RULES]
     ]

@@ -27,7 +27,10 @@ from krl.language_server.workspace import AnalysedFile, OpenProject, certain
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_$]{0,23}")
 _WORD = re.compile(r"[$\w]*$")
 _TEXT = re.compile(r'"[^"]*"')
-_MEMBER = re.compile(r"([$A-Za-z_][\w$]*(?:\[[^\]]*\])?(?:\.\w*(?:\[[^\]]*\])?)*)\.\w*$")
+_PLACE = r"([$A-Za-z_][\w$]*(?:\[[^\]]*\])?(?:\.\w*(?:\[[^\]]*\])?)*)"
+_MEMBER = re.compile(rf"{_PLACE}\.\w*$")
+#: A hash behind a place that it is assigned to or compared with.
+_COMPARED = re.compile(rf"{_PLACE}\s*[<>=]+\s*#\s*\w*$")
 
 
 class RenameError(ValueError):
@@ -130,7 +133,8 @@ _SPACES = (Space.VALUE, Space.ROUTINE, Space.TYPE)
 def completions(looked: AnalysedFile, offset: int) -> list[Candidate]:
     """Return the words that can be written at an offset: keywords, then names, nearest first.
 
-    After ``#`` these are the constants of all enumerations, after a dot the members of the
+    After ``#`` these are the constants of the enumeration of the variable in front, of all
+    enumerations where there is none; after a dot the members of the
     structure, after GOTO the labels of the routine. There are none in comments and texts.
     """
     line, column = looked.source.place(offset)
@@ -138,7 +142,10 @@ def completions(looked: AnalysedFile, offset: int) -> list[Candidate]:
     if set(_TEXT.sub("", before)) & {";", '"'}:
         return []
     if re.search(r"#\s*\w*$", before):
-        found = _constants(looked)
+        compared = _COMPARED.search(before)
+        type_ = _type_of(looked, line, compared[1]) if compared is not None else None
+        is_enumeration = type_ is not None and type_.kind is Kind.ENUMERATION
+        found = _constants_of(type_) if type_ and is_enumeration else _constants(looked)
     elif (member := _MEMBER.search(before)) is not None:
         found = _members(looked, line, member[1])
     elif re.search(r"\bGOTO\s+\w*$", before, re.IGNORECASE):
@@ -205,29 +212,38 @@ def _constants(looked: AnalysedFile) -> Iterator[Candidate]:
     for module in modules:
         for _, symbol in module.table.table.symbols() if module.table else ():
             if isinstance(symbol, TypeSymbol) and symbol.kind is Kind.ENUMERATION:
-                for member in symbol.members.values():
-                    yield Candidate(member.name, Kind.ENUM_CONSTANT, symbol.name)
+                yield from _constants_of(symbol)
     for type_ in System.load().types.values():
         if isinstance(type_, Enumeration):
             for name in type_.constants:
                 yield Candidate(name, Kind.ENUM_CONSTANT, type_.name)
 
 
-def _members(looked: AnalysedFile, line: int, chain: str) -> Iterator[Candidate]:
-    """Yield the members of an expression such as ``A.B[1]``."""
+def _constants_of(type_: TypeSymbol) -> Iterator[Candidate]:
+    for member in type_.members.values():
+        yield Candidate(member.name, Kind.ENUM_CONSTANT, type_.name)
+
+
+def _members(looked: AnalysedFile, line: int, place: str) -> Iterator[Candidate]:
+    type_ = _type_of(looked, line, place)
+    for member in type_.members.values() if type_ is not None else ():
+        yield Candidate(member.name, Kind.MEMBER, type_name(member))
+
+
+def _type_of(looked: AnalysedFile, line: int, place: str) -> TypeSymbol | None:
+    """Return the type of an expression such as ``A.B[1]`` if it is a structure or enumeration."""
     scope = looked.scope(line)
     if scope is None:
-        return
-    first, *others = (re.sub(r"\[.*", "", part).upper() for part in chain.split("."))
+        return None
+    first, *others = (re.sub(r"\[.*", "", part).upper() for part in place.split("."))
     found: Answer = certain(scope.find(Space.VALUE, first))
     for name in others:
         structure = found.type_symbol() if isinstance(found, Found) else None
         symbol = structure.symbol if isinstance(structure, Found) else None
         member = symbol.members.get(name) if isinstance(symbol, TypeSymbol) else None
         if member is None or not isinstance(structure, Found):
-            return
+            return None
         found = Found(member, structure.scope)
     structure = found.type_symbol() if isinstance(found, Found) else None
-    if isinstance(structure, Found) and isinstance(structure.symbol, TypeSymbol):
-        for member in structure.symbol.members.values():
-            yield Candidate(member.name, Kind.MEMBER, type_name(member))
+    symbol = structure.symbol if isinstance(structure, Found) else None
+    return symbol if isinstance(symbol, TypeSymbol) else None

@@ -96,9 +96,9 @@ def signature(symbol: Symbol) -> str:
     """Return a symbol as it is declared: type and name, and the parameters of a routine."""
     if not isinstance(symbol, RoutineSymbol):
         return f"{type_name(symbol)} {symbol.name}".strip()
-    listed = ", ".join(map(parameter, symbol.parameters)) + (", …" if symbol.has_more else "")
+    listed = [*map(parameter, symbol.parameters), *(["…"] if symbol.more is not None else [])]
     head = f"DEFFCT {type_name(symbol)}" if symbol.type or symbol.given else "DEF"
-    return f"{head} {symbol.name}({listed})"
+    return f"{head} {symbol.name}({', '.join(listed)})"
 
 
 def parameter(symbol: ParameterSymbol) -> str:

@@ -30,6 +30,9 @@ DEF PROG()
   DECL REAL R
   INT C
   FRAME F
+  STRUC PART INT N
+  DECL PART P
+  P.N = 4
   F = {X 1.5, Y 2, Z 3}
   N = 0
   C=0

@@ -172,7 +172,10 @@ def test_a_name_that_cannot_be_is_refused(
         ("  N = 1 ; the PA", set(), {"N", "LOOP"}),
         ('  TEXT[] = ";" + "PA', set(), {"N", "LOOP"}),
         ('  F("; A", PA', {"N"}, set()),
-        ("  BASE_OF = #", {"EMPTY", "FULL", "BASE", "JOINT"}, {"N", "PARTS"}),
+        ("  BASE_OF = #", {"EMPTY", "FULL"}, {"N", "PARTS", "BASE", "JOINT"}),
+        ("  IF BASE_OF <> #", {"EMPTY", "FULL"}, {"N", "PARTS", "BASE", "JOINT"}),
+        ("  $IPO_MODE=#B", {"BASE", "TCP"}, {"EMPTY", "JOINT"}),
+        ("  FETCH(#", {"EMPTY", "FULL", "BASE", "JOINT"}, {"N", "PARTS"}),
         ("  SPOT.", {"X", "Y", "Z", "A", "B", "C"}, {"N", "S"}),
     ],
 )
@@ -403,3 +406,13 @@ def test_the_server_mends_completes_and_ends(tmp_path: Path) -> None:
     assert b"ignore KRL001 here" in done.stdout
     assert b"write CP" in done.stdout
     assert b'"label":"$OUT"' in done.stdout.replace(b": ", b":")
+
+
+def test_hover_over_a_word_of_two_statements_begins_with_its_own(project: OpenProject) -> None:
+    path = next(one for one in project.paths() if one.endswith("CELL.src"))
+    project.change(path, PROGRAM.replace("  INT N\n", "  INT N\n  FOR N = 1 TO 2\n  ENDFOR\n"))
+    looked = project.look(path)
+    assert looked is not None
+    said = hover(project, looked, looked.source.text.index("FOR"))
+    assert said is not None
+    assert "WAIT FOR" not in said[0].split("**")[2]

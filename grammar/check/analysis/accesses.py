@@ -12,7 +12,7 @@ from typing import Any
 
 from grammar.check.analysis.context import Context
 from grammar.semantics.scopes import Found
-from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
+from grammar.semantics.symbols import Kind, RoutineSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import BODIES, LEAVES, PLACES, children, left_chain
 from support.lazy_dataclass import dataclass
@@ -139,22 +139,18 @@ def _add_place(context: Context, node: ast.Expression, use: Use, found: list[Acc
 def _call(context: Context, node: ast.Call, found: list[Access]) -> None:
     """Add the arguments of a call: those passed :IN are read, the use of others is unknown."""
     called = context.found(node.name)
-    known = called_parameters(called)
+    symbol = called.symbol if called else None
     for index, argument in enumerate(node.arguments):
         if argument is None:
             continue
         _add(context, argument, found)
         if type(argument) in PLACES and found[-1].place is argument:
-            use = Use.PASSED if is_passed_on(argument, index, known) else Use.READ
-            routine = address_of(called) if index < len(known) else None
+            known = symbol.parameter(index) if isinstance(symbol, RoutineSymbol) else None
+            is_read = known is not None and known.mode == "IN"
+            use = Use.READ if is_read else Use.PASSED
+            routine = address_of(called) if known is not None else None
             to = (*routine, index) if routine else None
             found[-1] = Access(found[-1].name, use, argument, to)
-
-
-def called_parameters(called: Found | None) -> Sequence[ParameterSymbol]:
-    """Return the parameters of a called routine; none if they are unknown."""
-    symbol = called.symbol if called else None
-    return symbol.parameters if isinstance(symbol, RoutineSymbol) else ()
 
 
 def address_of(called: Found | None) -> tuple[str, str] | None:
@@ -164,12 +160,6 @@ def address_of(called: Found | None) -> tuple[str, str] | None:
     if called.module.is_head_unread(called.symbol.key):
         return None
     return called.module.path, called.symbol.key
-
-
-def is_passed_on(argument: ast.Expression, index: int, known: Sequence[ParameterSymbol]) -> bool:
-    """Return whether a call may change the ``index``-th argument, given ``known`` parameters."""
-    is_read = index < len(known) and known[index].mode == "IN"
-    return type(argument) in PLACES and not is_read
 
 
 _RULES: Mapping[type[Any], Callable[[Context, Any, list[Access]], object]] = {

@@ -8,7 +8,7 @@ happens to arguments is in the `routine_summaries`.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from typing import Any
 
 from grammar.check.analysis.accesses import Use, accesses
@@ -20,7 +20,7 @@ from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.diagnostics.did_you_mean import did_you_mean
 from grammar.semantics.predefined import is_priority
 from grammar.semantics.scopes import REST
-from grammar.semantics.symbols import Access, SignalSymbol
+from grammar.semantics.symbols import Access, Kind, SignalSymbol
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 from grammar.syntax.walk import left_chain, root_variable, without_parentheses
@@ -43,8 +43,9 @@ class Effects:
     ``changed`` are the names that are assigned or passed on, with a constant index as in
     ``$FLAG[3]``; ``reset`` those that may become FALSE. ``declared`` and ``switched_on`` have
     interrupt numbers, and ``""`` for all or unknown ones; ``switches`` are the places that switch a
-    number on, off or otherwise. ``valueless`` are variables without an initial value,
-    ``summaries`` those of its routines.
+    number on, off or otherwise. ``valueless`` are variables without an initial value, ``used`` the
+    variables of data lists that occur in it, each with the path of its list; ``summaries`` are
+    those of its routines.
     """
 
     interrupts: tuple[Place, ...] = ()
@@ -56,6 +57,7 @@ class Effects:
     waits: tuple[tuple[Place, frozenset[str]], ...] = ()
     changed: frozenset[str] = frozenset()
     valueless: tuple[Place, ...] = ()
+    used: frozenset[tuple[str, str]] = frozenset()
     summaries: Summaries | None = None
 
 
@@ -127,6 +129,7 @@ class _Collector:
             tuple(self._waits),
             frozenset(self._changed),
             valueless,
+            frozenset(self._used()),
             self._summaries.made(),
         )
 
@@ -157,6 +160,13 @@ class _Collector:
             is_own = symbol is not None and symbol.access is not Access.GLOBAL
             if is_own or context.project.is_complete:
                 yield self._place(name, name.text)
+
+    def _used(self) -> Iterator[tuple[str, str]]:
+        own = self._context.module
+        for found in self._context.used:
+            symbol, module = found.symbol, found.module
+            if module is not None and module is not own and symbol.kind is Kind.VARIABLE:
+                yield module.path, symbol.key
 
     def _place(self, node: ast.Node, what: str) -> Place:
         source = self._context.source
@@ -308,10 +318,8 @@ _RULES: Mapping[type[Any], Callable[[_Collector, Any], None]] = {
 # ------------------------------------------------------------------------------------- a project
 
 
-def of_project(
-    found: Iterable[Effects], names: Callable[[], Mapping[str, Set[str]]]
-) -> Iterator[Diagnostic]:
-    """Yield the findings that depend on several files; ``names`` returns those of each file."""
+def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
+    """Yield the findings that depend on several files."""
     files = list(found)
     declared = frozenset[str]().union(*(one.declared for one in files))
     switched_on = frozenset[str]().union(*(one.switched_on for one in files))
@@ -322,7 +330,13 @@ def of_project(
     reset = frozenset[str]().union(*(one.reset for one in files))
     changed = frozenset[str]().union(*(one.changed for one in files))
     yield from of_summaries([one.summaries for one in files if one.summaries])
-    yield from _never_assigned([place for one in files for place in one.valueless], changed, names)
+    used = frozenset[tuple[str, str]]().union(*(one.used for one in files))
+    if REST not in changed:
+        for place in (place for one in files for place in one.valueless):
+            key = place.what.upper()
+            if (place.path, key) in used and key not in changed:
+                message = f"{place.what} has no value, and nothing assigns to it"
+                yield diagnose("never-assigned", place.path, place.region, message)
     for one in files:
         if "" not in switched_on:
             yield from _never_on(one.interrupts, switched_on | meant)
@@ -332,21 +346,6 @@ def of_project(
             if not (keys | {key.partition("[")[0] for key in keys}) & changed:
                 message = f"no file at hand sets {place.what}, so this may wait for ever"
                 yield diagnose("never-fulfilled", place.path, place.region, message)
-
-
-def _never_assigned(
-    valueless: Sequence[Place], changed: Set[str], names: Callable[[], Mapping[str, Set[str]]]
-) -> Iterator[Diagnostic]:
-    """Yield the variables without a value that the program of their data list uses."""
-    if REST in changed or not valueless:
-        return
-    programs = {path.upper(): words for path, words in names().items()}
-    for place in valueless:
-        key = place.what.upper()
-        program = programs.get(f"{place.path[:-4]}.src".upper(), ())
-        if key in program and key not in changed:
-            message = f"{place.what} has no value, and nothing assigns to it"
-            yield diagnose("never-assigned", place.path, place.region, message)
 
 
 def _undeclared(

@@ -13,12 +13,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
-from grammar.check.analysis.accesses import Parameter, Use, address_of, called_parameters
+from grammar.check.analysis.accesses import Parameter, Use, address_of
 from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.context import Bound, Context, RoutineBody
 from grammar.check.analysis.statement_heads import head
 from grammar.check.flow.data_flow import DataFlow, data_flow
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
+from grammar.semantics.symbols import RoutineSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import BODIES, bodies
 from support.lazy_dataclass import dataclass
@@ -125,9 +126,9 @@ class SummaryCollector:
         context = self._context
         found = context.found(node.name)
         address = address_of(found)
-        if address is None:
+        if found is None or address is None or not isinstance(found.symbol, RoutineSymbol):
             return
-        for index, parameter in enumerate(called_parameters(found)):
+        for index, parameter in enumerate(found.symbol.parameters):
             to = *address, index
             argument = node.arguments[index] if index < len(node.arguments) else None
             if argument is None:

@@ -158,7 +158,7 @@ def check_project(
     found += of_names(rest, spelling)
     found += misspelt_constants(constants, files, spelling.files)
     found += missing_arguments(call for one in kept for call in one.calls)
-    found += of_effects((one.effects for one in kept), lambda: spelling.files)
+    found += of_effects(one.effects for one in kept)
     return in_order(found)
 
 

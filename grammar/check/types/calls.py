@@ -67,7 +67,7 @@ def _check_arguments(
 ) -> None:
     given, wanted = node.arguments, symbol.parameters
     is_uncertain = _is_uncertain(symbol, scope)
-    if len(given) > len(wanted) and not symbol.has_more:
+    if len(given) > len(wanted) and symbol.more is None:
         many = "no arguments" if not wanted else counted(len(wanted))
         message = f"{symbol.name} takes {many}, and this is one more"
         if len(given) > len(wanted) + 1:
@@ -76,11 +76,11 @@ def _check_arguments(
         checker.report("too-many-arguments", first, message, is_unconfirmed=is_uncertain)
     if isinstance(scope, SystemScope | PackageScope):
         _check_missing(checker, node, symbol, is_uncertain=is_uncertain)
-    for parameter, argument in zip(wanted, given, strict=False):
-        if argument is not None:
+    for place, argument in enumerate(given):
+        parameter = symbol.parameter(place)
+        if argument is not None and parameter is not None:
             _check(checker, symbol, parameter, scope, argument, is_uncertain=is_uncertain)
-    for argument in given[len(wanted) :]:
-        if argument is not None:
+        elif argument is not None:
             checker.infer(argument)
     _check_output(checker, node, symbol, scope)
 

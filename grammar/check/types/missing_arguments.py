@@ -65,7 +65,7 @@ def _may_have_more(answer: Answer, arguments: int) -> bool:
     symbol = answer.symbol
     if isinstance(answer.scope, PackageScope) and isinstance(symbol, RoutineSymbol):
         needed = sum(not one.is_optional for one in symbol.parameters)
-        return symbol.has_more or needed <= arguments
+        return symbol.more is not None or needed <= arguments
     return symbol.kind is Kind.EXTERNAL
 
 

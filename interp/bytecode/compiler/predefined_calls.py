@@ -6,11 +6,10 @@ references to system variables; a copy is passed instead and written back.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from pathlib import PurePosixPath
 
 from grammar.semantics.assignability import assignable
-from grammar.semantics.predefined import PredefinedParameter, System
+from grammar.semantics.predefined import PredefinedFunction, PredefinedParameter, System
 from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind
 from grammar.semantics.types import CHAR, REAL, UNKNOWN, Type
@@ -66,13 +65,13 @@ class PredefinedCalls(CodeMaker):
         if is_builtin and function.stops:
             self._emitter.ask("StopAdvance")
         parts = [
-            self._argument(name, argument, parameter, is_builtin=is_builtin)
-            for argument, parameter in _paired(node.arguments, function.parameters)
+            self._argument(name, argument, function.parameter(place), is_builtin=is_builtin)
+            for place, argument in enumerate(node.arguments)
         ]
         result = function.result
         if result == UNKNOWN and is_value:
             raise self._emitter.refuse(str(untyped_result(name)))
-        if is_builtin and not _fits(node, function.parameters, function.has_more):
+        if is_builtin and not _fits(node, function):
             raise self._emitter.fail("argument")
         if result is None or result == UNKNOWN:
             self._cross(name, parts, None, is_builtin=is_builtin)
@@ -116,7 +115,7 @@ class PredefinedCalls(CodeMaker):
         if parameter is not None:
             is_out, type_ = parameter.is_out, parameter.type
         else:
-            is_out, type_ = not is_builtin or BUILTINS[name].changes_more, UNKNOWN
+            is_out, type_ = not is_builtin, UNKNOWN
         if is_out and is_variable(self._context.unit, argument):
             return self._changed(self._designators.place(argument))
         if name in BY_TEXT and isinstance(argument, ast.StringLiteral):
@@ -195,13 +194,6 @@ class PredefinedCalls(CodeMaker):
         return Changed(Input(Mode.REF, self._emitter.number(value.type)), None, path)
 
 
-def _paired(
-    arguments: Sequence[ast.Expression | None], parameters: Sequence[PredefinedParameter]
-) -> Iterator[tuple[ast.Expression | None, PredefinedParameter | None]]:
-    for place, argument in enumerate(arguments):
-        yield argument, parameters[place] if place < len(parameters) else None
-
-
-def _fits(node: ast.Call, parameters: Sequence[PredefinedParameter], has_more: bool) -> bool:
-    count = len(node.arguments)
-    return count >= len(parameters) and (count == len(parameters) or has_more)
+def _fits(node: ast.Call, function: PredefinedFunction) -> bool:
+    count, least = len(node.arguments), len(function.parameters)
+    return count >= least and (count == least or function.more is not None)

@@ -177,7 +177,7 @@ def call_mismatch(program: Program, builtin: Builtin) -> str | None:
     if known is None:
         return "there is no such function that only computes"
     least, given = len(known.parameters), len(builtin.parts)
-    if given < least or (given > least and not known.has_more):
+    if given < least or (given > least and known.more is None):
         return f"it has {least} arguments, not {given}"
     result = None if builtin.result is None else program.types[builtin.result]
     if result != known.result:

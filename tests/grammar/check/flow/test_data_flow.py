@@ -40,6 +40,14 @@ USED = ("$ANOUT[1] = I + N", "$FLAG[1] = B")
         ],
         ["FOR I = 1 TO N ;> KRL409?", "B = I > 1", "ENDFOR", "N = 1"],
         ["SET(I, N)", "B = TRUE"],
+        ["DECL STATE_T S", "N = 0", "B = TRUE", 'SREAD("1", S, N, "%d", I)'],
+        [
+            "DECL STATE_T S",
+            "DECL CHAR T[9]",
+            "N = 0",
+            "B = TRUE",
+            'SWRITE(T[], S, N, "%d", I) ;> KRL409?',
+        ],
         ["REPEAT", "I = 1", "N = 2", "B = I == N", "UNTIL B"],
     ],
 )

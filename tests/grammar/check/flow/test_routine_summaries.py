@@ -134,6 +134,7 @@ def test_behind_a_routine_that_does_not_return(agrees: Agrees, body: str, mark: 
         ("INT N=1", "$ANOUT[1] = N", False),
         ("INT N[2]\nN[1]=1", "$ANOUT[1] = N[1]", False),
         ("INT N", "HALT", False),
+        ("INT N", "OWN(1)\nEND\nDEF OWN(N:IN)\nINT N\n$ANOUT[1] = N", False),
         ("INT K, N=1", "HALT", False),
         ("INT N", "N = 1", False),
         ("INT N", "$ANOUT[1] = N\nFILL(N)", False),
@@ -154,7 +155,7 @@ def test_variables_that_nothing_gives_a_value(
         "USES.src": "DEF USES(K:IN)\nINT K\n$ANOUT[1] = K\nEND",
         "NEG.dat": data.format(";> KRL417?" if is_known else ""),
     }
-    ignored = ("KRL117", "KRL7")
+    ignored = ("KRL111", "KRL117", "KRL7")
     agrees(given, with_data=True, is_complete=is_complete, ignored=ignored)
     other = "DEFDAT OTHER\nIMPORT INT M IS /R1/NEG..N\nENDDAT"
     given |= {"NEG.dat": data.format(""), "OTHER.dat": other}
