@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import gc
+import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import count
+from itertools import count, takewhile
 from platform import node
 from types import MappingProxyType
 from typing import Any, Final
@@ -103,13 +104,15 @@ def fuzz(
     on_done: Callable[[int], None] = lambda _count: None,
     scheduler: str | None = None,
     rules: Needs = MappingProxyType({}),
+    minutes: float | None = None,
 ) -> Findings:
     """Run ``programs`` random programs on executors, of which the first is the reference.
 
     Use ``jobs`` processes of this machine, or the Dask cluster whose ``scheduler`` has this
     address. The calling process reduces the findings. ``on_done`` is called with the number of
-    programs since its last call. The programs that reach each of the ``rules`` are counted. The
-    result depends only on ``programs``, ``seed``, ``executors`` and ``rules``.
+    programs since its last call. The programs that reach each of the ``rules`` are counted. After
+    ``minutes`` no more are started. The result depends only on the number of programs that were
+    run, ``seed``, ``executors`` and ``rules``.
 
     Raises `support.parallel.workers.WorkersError`, also if a worker does not have these executors.
     """
@@ -119,14 +122,15 @@ def fuzz(
         _Shard(seed, first, min(first + _SHARD, programs), names, wanted)
         for first in range(0, programs, _SHARD)
     ]
+    end = float("inf") if minutes is None else time.monotonic() + 60 * minutes
+    tasks = ((shard,) for shard in takewhile(lambda _shard: time.monotonic() < end, shards))
     findings: list[Finding] = []
     counts: Counts = Counter()
     ends: Counter[str] = Counter()
-    facts = 0
-    done = ordered_map(
-        _run, ((shard,) for shard in shards), jobs=min(jobs, len(shards)), scheduler=scheduler
-    )
-    for shard, outcome in zip(shards, done, strict=True):
+    facts, run = 0, 0
+    done = ordered_map(_run, tasks, jobs=min(jobs, len(shards)), scheduler=scheduler)
+    for shard, outcome in zip(shards, done, strict=False):
+        run = shard.end
         findings += outcome.findings
         counts.update(outcome.counts)
         ends.update(outcome.ends)
@@ -136,7 +140,7 @@ def fuzz(
         _reduced(one, seed, names[0]) if place < _MOST_REDUCED else one
         for place, one in enumerate(findings)
     ]
-    return Findings(programs, seed, names, tuple(reduced), counts, ends, facts, rules)
+    return Findings(run, seed, names, tuple(reduced), counts, ends, facts, rules)
 
 
 #: Counts the shards that this process has run.

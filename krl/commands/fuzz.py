@@ -21,6 +21,10 @@ _SHOWN = 5
 def fuzz(
     programs: Annotated[int, typer.Option(min=1, metavar="N", help="Number of programs.")] = 1_000,
     seed: Annotated[int, typer.Option(metavar="N", help="Seed of the programs.")] = 1,
+    minutes: Annotated[
+        float | None,
+        typer.Option(min=0.1, metavar="N", help="Start no more programs after N minutes."),
+    ] = None,
     executor: Annotated[
         list[str] | None,
         typer.Option(
@@ -62,7 +66,7 @@ def fuzz(
         rules = needs(find_cases())
     begun = time.perf_counter()
     with as_input_errors(WorkersError), progress_bar("running programs", programs) as bar:
-        found = run(programs, seed, names, all_cores(jobs), bar, scheduler, rules)
+        found = run(programs, seed, names, all_cores(jobs), bar, scheduler, rules, minutes)
     record = record_of(found, time.perf_counter() - begun)
     write_json(record, json_file, indent=1)
     _print_summary(found, record["seconds"])

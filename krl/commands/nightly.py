@@ -245,7 +245,8 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     motions = ("motion", "blending", "program", *arm, "--html", str(folder / "conform-arm"))
     yield _Step("conform-arm", ("conform", *motions), 0.15, "conform-arm/index.html", arm)
     yield _Step("conform-laws", ("conform", "--metamorphic", "10"), 0.1)
-    yield _Step("fuzz", ("fuzz", "--programs", programs, "--seed", seed), 0.35)
+    within = ("--minutes", f"{0.3 * minutes:g}")  # a slow machine runs fewer
+    yield _Step("fuzz", ("fuzz", "--programs", programs, *within, "--seed", seed), 0.35)
     yield _Step(
         "recover", ("recover", *given, "--out", str(folder / "recover")), 0.3, "recover/index.html"
     )

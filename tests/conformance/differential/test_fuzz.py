@@ -232,6 +232,15 @@ def test_a_program_that_the_check_refuses_ends_no_campaign(monkeypatch: pytest.M
     assert (1, 3, ()) == (found.ends["LinkError"], found.ends.total(), found.findings)
 
 
+def test_time_that_is_up_ends_a_campaign(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What has begun is finished and reported as if no more had been asked for."""
+    expected = record_of(fuzz(4, 5, ["tree"]), 0.0)
+    monkeypatch.setattr(campaign, "_SHARD", 2)
+    clock = iter([0.0, 0.0, 59.0, 61.0])
+    monkeypatch.setattr(campaign, "time", SimpleNamespace(monotonic=lambda: next(clock)))
+    assert expected == record_of(fuzz(100, 5, ["tree"], minutes=1.0), 0.0)
+
+
 def test_command_without_difference(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Exit status 0, and a record with what was covered."""
     target = tmp_path / "fuzz.json"
