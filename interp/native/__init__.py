@@ -2,14 +2,13 @@
 
 =============== ====================================================================================
 `machine`       the executor: what the Python machine does around instructions
-``module.c``    the machine as a Python type, ``_core``; ``fuzz.c`` runs it on damaged images
+``module.c``    the machine as a Python type, ``_core``
 ``load.c``      loads an image into a machine, with the folders below
 `c_backend`     compiles register code to native code, by way of C and the installed C compiler
 ``translator/`` translates stack instructions to register code
 ``vm/``         register code: its steps (``register_code.h``) and their effects (``steps.h``), the
                 interpreter (``run.c``), memory and frames, predefined functions
-``verifier/``   checks that a program keeps the invariants on which the interpreter relies
-``image/``      reads untrusted bytes into a program
+``image/``      reads an image into a program
 ``program/``    a program in memory: cells, types, instructions
 =============== ====================================================================================
 

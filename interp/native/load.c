@@ -1,12 +1,30 @@
-/* Loads an image into a machine: reads, verifies and translates it. */
+/* Loads an image into a machine: reads and translates it. */
 #include "load.h"
 
 #include "image/reader.h"
 #include "translator/translate.h"
-#include "verifier/verifier.h"
 
-int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, int traced,
-                   struct krl_refusal *why)
+/* Returns 0 if there is not a depth for each instruction. */
+static int give_depths(struct krl_program *program, const int32_t *depths, size_t count, struct krl_refusal *why)
+{
+    size_t needed = 0;
+    for (int32_t number = 0; number < program->code_count; number++)
+        needed += (size_t)program->codes[number].length;
+    if (count != needed)
+        return krl_refuse(why, "the verifier has not seen these instructions");
+    int32_t *kept = krl_allocate(program, count, sizeof *kept);
+    if (kept == NULL)
+        return krl_refuse(why, "there is not enough memory for the program");
+    memcpy(kept, depths, count * sizeof *kept);
+    for (int32_t number = 0; number < program->code_count; number++) {
+        program->codes[number].depths = kept;
+        kept += program->codes[number].length;
+    }
+    return 1;
+}
+
+int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, const int32_t *depths,
+                   size_t count, int traced, struct krl_refusal *why)
 {
     memset(machine, 0, sizeof *machine);
     machine->traced = traced;
@@ -14,7 +32,7 @@ int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t len
     machine->checksum = krl_checksum(image, length);
     if (!krl_read_image(&machine->program, image, length, why))
         return 0;
-    if (!krl_verify(&machine->program, why) || !krl_translate(machine, why)) {
+    if (!give_depths(&machine->program, depths, count, why) || !krl_translate(machine, why)) {
         krl_unload(machine);
         return 0;
     }

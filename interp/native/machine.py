@@ -129,7 +129,14 @@ class _State(Core):
 
     base = 0  # where nothing lies on the stack that is not the frame's
 
-    def __init__(self, _image: bytes, _traced: int, _most_calls: int, _beside: Core | None) -> None:
+    def __init__(
+        self,
+        _image: bytes,
+        _depths: bytes,
+        _traced: int,
+        _most_calls: int,
+        _beside: Core | None,
+    ) -> None:
         self.stack: OperandStack = _Stack(self)
         self.calls = _Calls(self)
         self.reader: Reader | None = None
@@ -263,7 +270,8 @@ class Machine(vm.Machine):
 
     def _made_state(self, limits: Limits) -> State:
         beside = cast("_State", self._together[0]._state) if self._together else None
-        return cast("State", _State(self._verified.image, self._traced, limits.depth, beside))
+        image, depths = self._verified.image, self._verified.depths
+        return cast("State", _State(image, depths, self._traced, limits.depth, beside))
 
     def _made_ready(self, program: Program) -> ThreadedCode:
         state = cast("_State", self._state)

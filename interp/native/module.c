@@ -43,14 +43,14 @@ static PyObject *refused(const struct krl_refusal *why)
 
 static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords)
 {
-    static char *names[] = {"image", "traced", "most_calls", "beside", NULL};
-    const char *image;
-    Py_ssize_t length;
+    static char *names[] = {"image", "depths", "traced", "most_calls", "beside", NULL};
+    const char *image, *depths;
+    Py_ssize_t length, depths_length;
     int traced, most_calls;
     PyObject *beside;
     struct krl_refusal why;
-    if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "y#iiO", names, &image, &length, &traced,
-                                     &most_calls, &beside))
+    if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "y#y#iiO", names, &image, &length, &depths,
+                                     &depths_length, &traced, &most_calls, &beside))
         return NULL;
     if (beside != Py_None && !PyObject_TypeCheck(beside, core_type)) {
         PyErr_SetString(PyExc_TypeError, "beside must be a machine or None");
@@ -60,7 +60,8 @@ static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *key
     struct core *core = (struct core *)allocate(type, 0);
     if (core == NULL)
         return NULL;
-    if (!krl_load_image(&core->machine, (const uint8_t *)image, (size_t)length, traced, &why)) {
+    if (!krl_load_image(&core->machine, (const uint8_t *)image, (size_t)length, (const int32_t *)(const void *)depths,
+                        (size_t)depths_length / sizeof(int32_t), traced, &why)) {
         Py_DECREF(core);
         return refused(&why);
     }
@@ -359,7 +360,7 @@ static PyObject *core_steps(PyObject *self, PyObject *Py_UNUSED(ignored))
     for (int32_t i = 0; found != NULL && i < machine->step_count; i++) {
         const struct krl_step *step = &machine->steps[i];
         int32_t d = KRL_IS_JUMP(step->op) ? i + step->d / (int32_t)sizeof *step : step->d;
-        int32_t e = KRL_IS_THREE(step->op) ? machine->arrays[step->c].third : step->c + 1;
+        int32_t e = KRL_IS_THREE(step->op) ? machine->arrays[step->c].third : (int32_t)((uint32_t)step->c + 1);
         PyObject *one = Py_BuildValue("siiiiiii", step_names[step->op], (int)step->a, (int)step->b, (int)step->c,
                                       (int)d, (int)step->tag, (int)step->statement, (int)e);
         if (one == NULL || PyList_SetItem(found, i, one) < 0)
@@ -486,7 +487,7 @@ static PyGetSetDef core_getset[] = {
 };
 
 static PyType_Slot core_slots[] = {
-    {Py_tp_doc, "A program ready to run, and its memory. Core(image, traced, most_calls, beside)."},
+    {Py_tp_doc, "A program ready to run, and its memory. Core(image, depths, traced, most_calls, beside)."},
     {Py_tp_new, core_new},
     {Py_tp_dealloc, core_dealloc},
     {Py_tp_methods, core_methods},

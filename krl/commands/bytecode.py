@@ -117,19 +117,17 @@ def disassemble_image(
     from interp.native import AVAILABLE
 
     try:
-        words = _read(image)
-        program = read_image(words)
-        verify(program)
+        verified = verify(read_image(_read(image)))
     except (ImageError, VerificationError) as error:
         raise InputError(f"{image}: {error}") from error
     if not steps:
-        typer.echo(disassemble(program), nl=False)
+        typer.echo(disassemble(verified.program), nl=False)
         return
     if not AVAILABLE:
         raise InputError("--steps: the machine in C was not built")
     from interp.native.c_backend.register_code import listing
 
-    for line in listing(program, words):
+    for line in listing(verified):
         typer.echo(line)
 
 

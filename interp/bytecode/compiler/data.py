@@ -168,7 +168,7 @@ def initial_values(shared: Shared) -> tuple[tuple[int, int], ...]:
         tuple(known),
         (code,),
     )
-    machine = Machine(Verified(program, ()), "DATA")  # made here, and run here and now
+    machine = Machine(Verified(program, b""), "DATA")  # made here, and run here and now
     end = machine.advance()
     while not isinstance(end, End | Fail):
         end = machine.advance()

@@ -23,9 +23,8 @@ An effect is ``TAKES -- LEAVES``, the top of the stack at the right. ``x`` is an
 =================== ================================================================================
 
 Checks are made before the stack is touched: words with the operands they are about, separated by
-semicolons. Both verifiers carry out the same steps in the same order: the checks, what is taken
-from the top downwards, what is left. The verifier in Python reads them from here
-(`interp.bytecode.verifier.stack_effects`), the one in C is generated.
+semicolons. The verifier (`interp.bytecode.verifier.stack_effects`) carries out the checks, then
+what is taken from the top downwards, then what is left.
 """
 
 from __future__ import annotations

@@ -6,10 +6,9 @@ in C and the table in ``docs/bytecode.md``; ``--check`` says whether they are up
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
-from interp.bytecode.instruction_set.effects import EffectStep
 from interp.bytecode.instruction_set.table import (
     FORMAT,
     MAGIC,
@@ -27,10 +26,6 @@ _MADE_BY = (
     "Made from interp/bytecode/instructions.tsv"
     " by python -m interp.bytecode.instruction_set --write"
 )
-#: Kinds of operands that the machine in C does not check: lines are not used, targets were read.
-_CHECKED_ELSEWHERE = frozenset({"line", "target"})
-#: Steps that the machine in C leaves out: nothing is ever read of a view that is missing.
-_CHECKED_IN_PYTHON = frozenset({("check", "element")})
 #: The names in C of operators with a weight.
 _IN_C = {":": "COMPOSE"}
 _BEGIN = "<!-- instructions: made by python -m interp.bytecode.instruction_set --write -->"
@@ -59,6 +54,7 @@ def _opcodes() -> str:
 
 def _header() -> str:
     kinds = list(OPERAND_KINDS)
+    ends = [f"op == KRL_{one.name}" for one in instructions() if "ends" in one.flags]
     lines = [
         f"/* {_MADE_BY}. */",
         "#ifndef KRL_ISA_GEN_H",
@@ -85,8 +81,12 @@ def _header() -> str:
         f"    KRL_OPCODE_COUNT = {len(instructions())}",
         "};",
         "",
-        *_flag_test("ends", "Whether execution never continues with the next instruction."),
-        *_flag_test("changes", "Whether this instruction is not allowed in a condition."),
+        "/* Whether execution never continues with the next instruction. */",
+        "static inline int krl_ends(uint32_t op)",
+        "{",
+        f"    return {' || '.join(ends)};",
+        "}",
+        "",
         "/* The catalogue of faults. */",
         "enum krl_fault {",
         *(f"    KRL_FAULT_{slug.upper()} = {kind.code}," for slug, kind in FAULTS.items()),
@@ -106,62 +106,6 @@ def _header() -> str:
 def _entry(one: Shape, kinds: list[str]) -> str:
     packed = sum((kinds.index(kind) + 1) << 8 * place for place, kind in enumerate(one.operands))
     return f"X({one.name}, {len(one.operands)}, 0x{packed:08x})"
-
-
-def _flag_test(flag: str, meaning: str) -> Iterator[str]:
-    """Yield a function in C that is true for the instructions with a flag."""
-    yield from (f"/* {meaning} */", f"static inline int krl_{flag}(uint32_t op)", "{")
-    names = [f"op == KRL_{one.name}" for one in instructions() if flag in one.flags]
-    yield from (f"    return {' || '.join(names)};", "}", "")
-
-
-def _operand_ranges() -> str:
-    """Return the cases of a switch in C that checks whether an operand is in range."""
-    lines = [f"/* {_MADE_BY}. */"]
-    for name, kind in OPERAND_KINDS.items():
-        if name in _CHECKED_ELSEWHERE or kind.least is None:
-            continue
-        tests = [f"operand >= {kind.least}"]
-        if kind.limit is not None:
-            owner = "flow->code" if kind.limit == "frame" else "flow->program"
-            limit = kind.limit if isinstance(kind.limit, int) else f"{owner}->{kind.limit}"
-            tests.append(f"operand < {limit}")
-        lines.append(f"case KRL_OPERAND_{name.upper()}: return {' && '.join(tests)};")
-    return "\n".join(lines) + "\n"
-
-
-def stack_effects_in_c(shapes: Sequence[Shape]) -> str:
-    """Return the cases of a switch in C: the steps of the verifier for each instruction."""
-    cases: dict[tuple[str, ...], list[str]] = {}
-    for one in shapes:
-        cases.setdefault(tuple(_statements(one)), []).append(one.name)
-    lines = [f"/* {_MADE_BY}. */"]
-    for statements, names in cases.items():
-        lines += [f"case KRL_{name}:" for name in names]
-        lines += [f"    {statement}" for statement in (*statements, "break;")]
-    return "\n".join(lines) + "\n"
-
-
-def _statements(one: Shape) -> Iterator[str]:
-    if "trace" in one.flags:  # trace events are worked out in Python
-        return
-    steps = [step for step in one.steps if (step.verb, step.name) not in _CHECKED_IN_PYTHON]
-    checks = [step for step in steps if step.verb == "check"]
-    yield from map(_statement, checks)
-    if checks and len(checks) < len(steps):
-        yield from ("if (flow->is_wrong)", "    return;")
-    yield from map(_statement, steps[len(checks) :])
-
-
-def _statement(step: EffectStep) -> str:
-    arguments = [
-        f"KRL_TYPE_{one}" if isinstance(one, str) else f"operands[{one}]" for one in step.arguments
-    ]
-    given = ", ".join(["flow", *arguments])
-    if step.is_item:
-        return f"{step.verb}(flow, {step.name}({given}));"
-    prefix = "krl_" if step.verb == "check" else ""
-    return f"{prefix}{step.verb}_{step.name}({given});"
 
 
 def _rows() -> str:
@@ -197,8 +141,6 @@ def products() -> Mapping[Path, str]:
     return {
         _ROOT / "interp" / "bytecode" / "_generated" / "opcodes.py": _opcodes(),
         native / "program" / "isa.gen.h": _header(),
-        native / "verifier" / "operand_ranges.gen.h": _operand_ranges(),
-        native / "verifier" / "stack_effects.gen.h": stack_effects_in_c(instructions()),
         document: _document(document.read_text(encoding="utf-8")),
     }
 

@@ -3,7 +3,6 @@
 The table of the instruction set lists the steps of every instruction, see
 `interp.bytecode.instruction_set.effects`. Each step is a method with the same name here:
 ``check_array``, ``take_any``, or just ``array_view`` for an item that is popped or pushed.
-``interp/native/verifier/stack_effects.c`` implements the same steps in C.
 """
 
 from __future__ import annotations

@@ -25,6 +25,7 @@ all frames.
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -47,12 +48,12 @@ _LONGEST_STACK = 1 << 16
 class Verified:
     """A program that has passed the verifier.
 
-    ``depths`` has a tuple for each code object: the stack size in cells before each instruction, or
-    -1 for an unreachable one.
+    ``depths`` has the stack size in cells before each instruction of all code objects, or -1 for an
+    unreachable one, as 32-bit integers for the machine in C.
     """
 
     program: Program
-    depths: tuple[tuple[int, ...], ...]
+    depths: bytes
 
     @cached_property
     def image(self) -> bytes:
@@ -63,11 +64,11 @@ class Verified:
 def verify(program: Program) -> Verified:
     """Check a program; raises `VerificationError`."""
     check_form(program)
-    depths = []
+    depths = array("i")
     for code in program.codes:
         stacks = _checked_body(program, code)
-        depths.append(tuple(-1 if one is None else one.cells for one in stacks))
-    return Verified(program, tuple(depths))
+        depths.extend(-1 if one is None else one.cells for one in stacks)
+    return Verified(program, depths.tobytes())
 
 
 def measured(program: Program) -> Program:

@@ -45,7 +45,8 @@ def keep(verified: Verified) -> Path:
 
     Raises `OSError` as `library_of` does.
     """
-    return library_of(source_of(verified.program, Core(verified.image, 0, 0, None)))
+    core = Core(verified.image, verified.depths, 0, 0, None)
+    return library_of(source_of(verified.program, core))
 
 
 class CompiledMachine(Machine):

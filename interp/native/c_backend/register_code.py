@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import Final, NamedTuple
 
-from interp.bytecode.program import Program
+from interp.bytecode.verifier.verify import Verified
 from interp.native._core import Core
 
 CALLS: Final = ("CALL", "CALL_COPY")
@@ -88,15 +88,14 @@ class Step(NamedTuple):
         return self.named("".join(roles_of(self.name) or ""))
 
 
-def listing(program: Program, image: bytes) -> Iterator[str]:
+def listing(verified: Verified) -> Iterator[str]:
     """Yield the steps that a program without a trace executes, one line each, by code object.
 
-    The source line that begins with a step precedes its name. Raises `ValueError` for an invalid
-    image.
+    The source line that begins with a step precedes its name.
     """
-    core = Core(image, 0, 0, None)
+    core = Core(verified.image, verified.depths, 0, 0, None)
     steps = [Step(*one) for one in core.steps()]
-    firsts = {core.step(number, 0): code for number, code in enumerate(program.codes)}
+    firsts = {core.step(number, 0): code for number, code in enumerate(verified.program.codes)}
     for number, array in enumerate(core.arrays()):
         base, width, dimensions, *sizes = array
         shape = ",".join(map(str, sizes[:dimensions]))

@@ -66,8 +66,10 @@ static void read_body(struct reader *reader, struct krl_code *code)
     const uint8_t *bytes = reader->next;
     int32_t *numbers = krl_allocate_read(reader, words, sizeof *numbers);
     code->body = krl_allocate_read(reader, words, sizeof *code->body);
+    code->is_target = krl_allocate_read(reader, words, sizeof *code->is_target);
     if (reader->is_wrong)
         return;
+    code->is_target[0] = 1;
     for (int32_t i = 0; i < words; i++)
         numbers[i] = -1;
     for (int32_t place = 0; place < words && !reader->is_wrong; count++) {
@@ -84,14 +86,16 @@ static void read_body(struct reader *reader, struct krl_code *code)
     }
     code->length = count;
     reader->next = bytes + 4 * (size_t)words;
-    for (int32_t i = 0; i < count && !reader->is_wrong; i++)
+    for (int32_t i = 0; i < count; i++)
         for (uint32_t j = 0; j < shapes[code->body[i].op].operands; j++)
             if ((shapes[code->body[i].op].kinds >> 8 * j & 0xff) == KRL_OPERAND_TARGET) {
                 int32_t target = code->body[i].operands[j];
-                if (target < 0 || target >= words || numbers[target] < 0)
+                if (target < 0 || target >= words || numbers[target] < 0) {
                     krl_refuse_image(reader, "the image is damaged: a jump target is not an instruction");
-                else
-                    code->body[i].operands[j] = numbers[target];
+                    return;
+                }
+                code->body[i].operands[j] = numbers[target];
+                code->is_target[numbers[target]] = 1;
             }
 }
 

@@ -252,12 +252,6 @@ static inline int krl_ends(uint32_t op)
     return op == KRL_JUMP || op == KRL_RETURN || op == KRL_RETURN_VALUE || op == KRL_FAIL || op == KRL_UNLINKED;
 }
 
-/* Whether this instruction is not allowed in a condition. */
-static inline int krl_changes(uint32_t op)
-{
-    return op == KRL_LINE || op == KRL_AT || op == KRL_PROCEED || op == KRL_STORE_DATA || op == KRL_STORE;
-}
-
 /* The catalogue of faults. */
 enum krl_fault {
     KRL_FAULT_DIVISION_BY_ZERO = 0,

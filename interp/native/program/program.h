@@ -110,9 +110,8 @@ struct krl_code {
     int32_t capture_count;
     struct krl_instruction *body;
     int32_t length;
-    /* Set by krl_verify, by instruction. */
-    int32_t *depths; /* cells on the stack before each instruction, -1 if it is unreachable */
-    uint8_t *is_target;  /* whether an instruction is the first or a target */
+    const int32_t *depths; /* cells on the stack before each instruction, -1 if it is unreachable */
+    uint8_t *is_target;    /* whether an instruction is the first or a target */
 };
 
 struct krl_value {
@@ -161,11 +160,7 @@ int krl_refuse(struct krl_refusal *why, const char *reason);
 /* ---------------------------------------------------------------------------- types.c */
 
 /* Returns the type of the cell at an offset of a type: a scalar or an enumeration. */
-int32_t krl_kind_at(const struct krl_program *program, int32_t type, int32_t offset);
-
-/* Whether a part of type `wanted` begins at an offset of the type `whole`: a member, an element, a
- * row, or the whole. */
-int krl_has_part(const struct krl_program *program, int32_t whole, int32_t offset, int32_t wanted);
+int32_t krl_kind_at(const struct krl_program *program, int32_t number, int32_t offset);
 
 /* Whether a type is a scalar or an enumeration. */
 int krl_is_plain(const struct krl_program *program, int32_t type);

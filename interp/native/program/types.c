@@ -6,81 +6,34 @@ int krl_is_plain(const struct krl_program *program, int32_t type)
     return program->types[type].form <= KRL_ENUMERATION;
 }
 
-/* A part of a type, and the offset in it that is searched for. If the first `skipped` dimensions of
- * an array have an index, the part is a row of it. */
-struct part {
-    int32_t type;
-    int32_t skipped;
-    int32_t offset;
-};
-
-static int32_t row_size(const struct krl_program *program, const struct krl_type *array, int32_t from)
+/* Returns the member of a structure that contains a cell. */
+static const struct krl_member *member_at(const struct krl_type *type, int32_t offset)
 {
-    int32_t size = program->types[array->element].size;
-    for (int32_t dimension = from; dimension < array->count; dimension++)
-        size *= array->sizes[dimension]; /* no overflow: at most the size of the array */
-    return size;
-}
-
-/* Descends to the direct part that contains the offset. Returns 0 if the type has no parts. */
-static int step(const struct krl_program *program, struct part *part)
-{
-    const struct krl_type *type = &program->types[part->type];
-    if (type->form == KRL_ARRAY) {
-        part->offset %= row_size(program, type, ++part->skipped);
-        if (part->skipped == type->count) {
-            part->type = type->element;
-            part->skipped = 0;
-        }
-        return 1;
-    }
-    if (type->form != KRL_STRUCTURE)
-        return 0;
     int32_t low = 0, high = type->count - 1;
     while (low < high) {
         int32_t middle = (low + high + 1) / 2;
-        if (type->members[middle].offset <= part->offset)
+        if (type->members[middle].offset <= offset)
             low = middle;
         else
             high = middle - 1;
     }
-    part->offset -= type->members[low].offset;
-    part->type = type->members[low].type;
-    return 1;
+    return &type->members[low];
 }
 
-int32_t krl_kind_at(const struct krl_program *program, int32_t type, int32_t offset)
+int32_t krl_kind_at(const struct krl_program *program, int32_t number, int32_t offset)
 {
-    struct part part = {type, 0, offset};
-    while (step(program, &part))
-        ;
-    return part.type;
-}
-
-static int is_same(const struct krl_program *program, const struct part *part, int32_t wanted)
-{
-    if (part->skipped == 0 && part->type == wanted)
-        return 1;
-    const struct krl_type *left = &program->types[part->type], *right = &program->types[wanted];
-    if (left->form != KRL_ARRAY || right->form != KRL_ARRAY || left->element != right->element ||
-        left->count - part->skipped != right->count)
-        return 0;
-    for (int32_t dimension = 0; dimension < right->count; dimension++)
-        if (left->sizes[part->skipped + dimension] != right->sizes[dimension])
-            return 0;
-    return 1;
-}
-
-int krl_has_part(const struct krl_program *program, int32_t whole, int32_t offset, int32_t wanted)
-{
-    struct part part = {whole, 0, offset};
-    if (offset < 0 || offset >= program->types[whole].size)
-        return 0;
-    do {
-        if (part.offset == 0 && is_same(program, &part, wanted))
-            return 1;
-    } while (step(program, &part));
-    return 0;
+    while (!krl_is_plain(program, number)) {
+        const struct krl_type *type = &program->types[number];
+        if (type->form == KRL_ARRAY) {
+            number = type->element;
+            offset %= program->types[number].size;
+        } else {
+            const struct krl_member *member = member_at(type, offset);
+            number = member->type;
+            offset -= member->offset;
+        }
+    }
+    return number;
 }
 
 int krl_is_word_of(const struct krl_program *program, int32_t word, int32_t type)

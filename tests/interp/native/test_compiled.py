@@ -175,8 +175,9 @@ def test_long_routines_are_not_compiled(text: str, monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(compiled, "_MOST_STEPS", 10)
     program = Prepared(load([Source(text, "run.src")], "run.src"))
-    image = program.verified.image
-    source = compiled.source_of(program.verified.program, Core(image, 0, 0, None))
+    verified = program.verified
+    core = Core(verified.image, verified.depths, 0, 0, None)
+    source = compiled.source_of(verified.program, core)
     assert 1 == sum(f"void enter_{number}(" in source for number in range(2))
     limits = Limits(depth=1100)
     assert _requests(program, "vm", limits) == _requests(program, "compiled", limits)
@@ -251,7 +252,7 @@ def test_constants_of_switch(constants: Sequence[int], is_table: bool) -> None:
     calls = "".join(f"TRY({one})\n" for one in sorted(selectors) if -(2**31) <= one < 2**31)
     text = f"DEF RUN()\nINT K\n{calls}TRY(K)\nEND\nDEF TRY(N:IN)\nINT N\nSWITCH N\n{cases}"
     program = Prepared(load([Source(text + "ENDSWITCH\nEND\n", "run.src")], "run.src"))
-    steps = listing(program.verified.program, program.verified.image)
+    steps = listing(program.verified)
     assert is_table == any(" SWITCH " in line for line in steps)
     expected = repr(_requests(program, "tree", Limits()))
     for executor in ("vm", "native", "compiled"):

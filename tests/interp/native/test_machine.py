@@ -6,6 +6,7 @@ import gc
 import operator
 import re
 import weakref
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,6 @@ from interp import native
 from interp.bench.kernels import Kernel, kernels_in
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.compiler import compile_program
-from interp.bytecode.image.writer import write_image
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm import executor as vm
 from interp.bytecode.vm.context import computed
@@ -94,18 +94,43 @@ def test_memory_is_given_back(native: type[vm.Machine]) -> None:
 
 def test_companions_need_the_same_image(core: type[Core]) -> None:
     """Machines of different programs cannot share their data lists."""
-    image = write_image(assemble(_SHARED))
-    other = write_image(assemble(_SHARED.replace("M.I", "M.J")))
-    one = core(image, False, 5, None)
+    good = verify(assemble(_SHARED))
+    other = verify(assemble(_SHARED.replace("M.I", "M.J")))
+    one = core(good.image, good.depths, False, 5, None)
     with pytest.raises(MemoryError):
-        core(other, False, 5, one)
+        core(other.image, other.depths, False, 5, one)
     with pytest.raises(TypeError, match="a machine or None"):
-        core(image, False, 5, "one")  # type: ignore[arg-type]  # what is tested
+        core(good.image, good.depths, False, 5, "one")  # type: ignore[arg-type]  # what is tested
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda _image: b"", "too short"),
+        (lambda image: image[:-4], "the length or the sections"),
+        (lambda image: image[:4] + b"\x63" + image[5:], "compile it again"),
+        (lambda image: image[:40] + bytes([image[40] ^ 1]) + image[41:], "checksum"),
+        (lambda image: b"ELF\x7f" + image[4:], "not an image"),
+    ],
+)
+def test_refusals_say_why(core: type[Core], change: Callable[[bytes], bytes], reason: str) -> None:
+    """An image that is none is refused with one clear line."""
+    good = verify(assemble(_SHARED))
+    with pytest.raises(ValueError, match=reason):
+        core(change(good.image), good.depths, False, 5, None)
+
+
+def test_an_image_needs_what_the_verifier_found(core: type[Core]) -> None:
+    """Another program may need more cells than the machine allots."""
+    good = verify(assemble(_SHARED))
+    with pytest.raises(ValueError, match="the verifier has not seen"):
+        core(good.image, good.depths[4:], False, 5, None)
 
 
 def test_core_checks_what_leads_into_memory(core: type[Core]) -> None:
     """Cells, steps and code objects that there are not are refused."""
-    machine = core(write_image(assemble(_SHARED)), False, 5, None)
+    good = verify(assemble(_SHARED))
+    machine = core(good.image, good.depths, False, 5, None)
     for place in (-1, 10**9):
         with pytest.raises(IndexError):
             machine[place]
@@ -170,7 +195,7 @@ def test_kernels_give_the_same(kernel: Kernel) -> None:
 
 def test_includes_point_downwards() -> None:
     """A folder of C includes headers of those below it only."""
-    below = {"program": 0, "image": 1, "verifier": 1, "vm": 1, "translator": 2, "c_backend": 2}
+    below = {"program": 0, "image": 1, "vm": 1, "translator": 2, "c_backend": 2}
     for file in Path(native.__file__).parent.glob("*/*.[ch]"):
         for folder in re.findall(r'#include "(\w+)/', file.read_text(encoding="utf-8")):
             assert below[folder] < below[file.parent.name], f"{file} includes {folder}"

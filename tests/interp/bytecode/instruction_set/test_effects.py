@@ -1,12 +1,10 @@
-"""The notation of stack effects, and the C that is generated from it."""
+"""The notation of stack effects."""
 
 from __future__ import annotations
 
 import pytest
 
 from interp.bytecode.instruction_set.effects import EffectStep, steps_of
-from interp.bytecode.instruction_set.generator import stack_effects_in_c
-from interp.bytecode.instruction_set.table import Shape
 
 _OPERANDS = {"cell": "local", "array": "type", "view": "local", "count": "count", "at": "data"}
 
@@ -79,40 +77,3 @@ def test_what_the_notation_does_not_know_is_an_error(checks: str, effect: str, r
     """A table with a wrong word in it cannot be read."""
     with pytest.raises(ValueError, match=reason):
         steps_of(_OPERANDS, checks, effect)
-
-
-def _shape(name: str, checks: str, effect: str, flags: str = "") -> Shape:
-    steps = steps_of(_OPERANDS, checks, effect)
-    return Shape(0, name, (), "", checks, effect, steps, frozenset(flags.split()), "")
-
-
-def test_generated_c() -> None:
-    """Instructions of the same steps are one case; checks stand before the stack is touched."""
-    shapes = [
-        _shape("ADD", "", "INT INT -- INT"),
-        _shape("ROW", "row array count", "@array INT*count -- [array/count]"),
-        _shape("MUL", "", "INT INT -- INT"),
-        _shape("TELL", "array array", "--", "trace"),
-        _shape("LINE", "empty", "--"),
-    ]
-    assert """\
-case KRL_ADD:
-case KRL_MUL:
-    take(flow, value(flow, KRL_TYPE_INT));
-    take(flow, value(flow, KRL_TYPE_INT));
-    push(flow, value(flow, KRL_TYPE_INT));
-    break;
-case KRL_ROW:
-    krl_check_row(flow, operands[1], operands[3]);
-    if (flow->is_wrong)
-        return;
-    take_integers(flow, operands[3]);
-    take(flow, reference(flow, operands[1]));
-    push(flow, row(flow, operands[1], operands[3]));
-    break;
-case KRL_TELL:
-    break;
-case KRL_LINE:
-    krl_check_empty(flow);
-    break;
-""" == stack_effects_in_c(shapes).partition("\n")[2]
