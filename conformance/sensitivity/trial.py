@@ -48,8 +48,8 @@ _APART: Final = ("interp.values.", "interp.tree.")
 OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed", "by_profile")
 #: The largest number of cases that may fail which are run with a fault.
 MOST: Final = 1000
-#: The limit of processor time for a case in s; all of them need less than a tenth of it.
-_SECONDS: Final = 2.0
+#: The limit of processor time for a case in s: five times what any needs on a busy machine.
+_SECONDS: Final = 12.0
 #: The limit of address space in bytes; a usual run needs less than a quarter of it.
 _MEMORY: Final = 4 << 30
 

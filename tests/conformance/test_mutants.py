@@ -247,10 +247,10 @@ def test_cases_that_state_what_the_code_cites_are_tried() -> None:
         ("data/int_division", "values.operators:_divided", "right == 0", "right != 0", "red"),
         ("data/round_negative", "values.values:single", "0", "-1", "equivalent"),
         (
-            "io/analog_range",
+            "io/analog_beyond",
             "controller.state.signals:Signals._put_analog",
-            "-1.0 <= number <= 1.0",
-            "-1.0 < number <= 1.0",
+            "raise fault('invalid')",
+            "pass",
             "soft",
         ),
     ],
