@@ -4,17 +4,15 @@
 #include "image/reader.h"
 #include "translator/translate.h"
 
-/* Returns 0 if there is not a depth for each instruction. */
-static int give_depths(struct krl_program *program, const int32_t *depths, size_t count, struct krl_refusal *why)
+/* Returns 0 if there is not a depth for each instruction, or no memory for them. */
+static int give_depths(struct krl_program *program, const int32_t *depths, size_t count)
 {
     size_t needed = 0;
     for (int32_t number = 0; number < program->code_count; number++)
         needed += (size_t)program->codes[number].length;
-    if (count != needed)
-        return krl_refuse(why, "the verifier has not seen these instructions");
-    int32_t *kept = krl_allocate(program, count, sizeof *kept);
+    int32_t *kept = count == needed ? krl_allocate(program, count, sizeof *kept) : NULL;
     if (kept == NULL)
-        return krl_refuse(why, "there is not enough memory for the program");
+        return 0;
     memcpy(kept, depths, count * sizeof *kept);
     for (int32_t number = 0; number < program->code_count; number++) {
         program->codes[number].depths = kept;
@@ -23,16 +21,16 @@ static int give_depths(struct krl_program *program, const int32_t *depths, size_
     return 1;
 }
 
-int krl_load_image(struct krl_machine *machine, const uint8_t *image, size_t length, const int32_t *depths,
-                   size_t count, int traced, struct krl_refusal *why)
+int krl_load_image(struct krl_machine *machine, const uint8_t *image, const int32_t *depths, size_t count,
+                   int traced)
 {
     memset(machine, 0, sizeof *machine);
     machine->traced = traced;
     machine->left = 1;
-    machine->checksum = krl_checksum(image, length);
-    if (!krl_read_image(&machine->program, image, length, why))
+    machine->checksum = krl_checksum(image);
+    if (!krl_read_image(&machine->program, image))
         return 0;
-    if (!give_depths(&machine->program, depths, count, why) || !krl_translate(machine, why)) {
+    if (!give_depths(&machine->program, depths, count) || !krl_translate(machine)) {
         krl_unload(machine);
         return 0;
     }

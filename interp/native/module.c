@@ -35,12 +35,6 @@ static int is_ready(struct core *core)
     return 0;
 }
 
-static PyObject *refused(const struct krl_refusal *why)
-{
-    PyErr_SetString(PyExc_ValueError, why->text);
-    return NULL;
-}
-
 static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords)
 {
     static char *names[] = {"image", "depths", "traced", "most_calls", "beside", NULL};
@@ -48,7 +42,6 @@ static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *key
     Py_ssize_t length, depths_length;
     int traced, most_calls;
     PyObject *beside;
-    struct krl_refusal why;
     if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "y#y#iiO", names, &image, &length, &depths,
                                      &depths_length, &traced, &most_calls, &beside))
         return NULL;
@@ -60,10 +53,11 @@ static PyObject *core_new(PyTypeObject *type, PyObject *arguments, PyObject *key
     struct core *core = (struct core *)allocate(type, 0);
     if (core == NULL)
         return NULL;
-    if (!krl_load_image(&core->machine, (const uint8_t *)image, (size_t)length, (const int32_t *)(const void *)depths,
-                        (size_t)depths_length / sizeof(int32_t), traced, &why)) {
+    if (!krl_load_image(&core->machine, (const uint8_t *)image, (const int32_t *)(const void *)depths,
+                        (size_t)depths_length / sizeof(int32_t), traced)) {
         Py_DECREF(core);
-        return refused(&why);
+        PyErr_SetString(PyExc_MemoryError, "there is not enough memory for the program, or the depths are another's");
+        return NULL;
     }
     struct krl_machine *other = beside == Py_None ? NULL : &((struct core *)beside)->machine;
     if (!krl_give_memory(&core->machine, most_calls, other)) {

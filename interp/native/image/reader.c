@@ -1,107 +1,62 @@
-/* Reads words, strings, types and modes, which all sections consist of. */
+/* Reads an image into a program; interp/bytecode/image/layout.py defines the format. */
 #include "reader.h"
 
-void krl_refuse_image(struct reader *reader, const char *reason)
-{
-    krl_refuse(reader->why, reason);
-    reader->is_wrong = 1;
-    reader->left = 0;
-}
-
-uint32_t krl_read_word(struct reader *reader)
-{
-    if (reader->left == 0) {
-        krl_refuse_image(reader, "the image is damaged: a section ends early");
-        return 0;
-    }
-    uint32_t found = krl_word_at(reader->next);
-    reader->next += 4;
-    reader->left--;
-    return found;
-}
-
-int32_t krl_read_count(struct reader *reader)
-{
-    uint32_t count = krl_read_word(reader);
-    if (count > reader->left) {
-        krl_refuse_image(reader, "the image is damaged: a list is longer than its section");
-        return 0;
-    }
-    return (int32_t)count;
-}
-
-uint32_t krl_read_choice(struct reader *reader, uint32_t choices)
-{
-    uint32_t number = krl_read_word(reader);
-    if (number >= choices) {
-        krl_refuse_image(reader, "the image is damaged: a number is out of range");
-        return 0;
-    }
-    return number;
-}
-
-int32_t krl_read_optional(struct reader *reader, int32_t count)
-{
-    return (int32_t)krl_read_choice(reader, (uint32_t)count + 1) - 1;
-}
+/* Where the header has the length of the image, its checksum and the length of the strings, and
+ * where these begin, after the table of 9 sections. */
+enum { LENGTH = 8, CHECKSUM = 12, LENGTH_OF_STRINGS = 24, STRINGS = 20 + 8 * 9 };
 
 void *krl_allocate_read(struct reader *reader, int32_t count, size_t size)
 {
     void *memory = krl_allocate(reader->program, (size_t)count + 1, size); /* never 0 bytes */
     if (memory == NULL)
-        krl_refuse_image(reader, "there is not enough memory for the image");
+        longjmp(reader->no_memory, 1);
     return memory;
 }
 
-void krl_begin_section(struct reader *reader, struct section section)
+static uint32_t word_at(const uint8_t *bytes)
 {
-    if (reader->is_wrong)
-        return;
-    reader->next = section.bytes;
-    reader->left = section.length / 4;
+    return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
+           (uint32_t)bytes[3] << 24;
 }
 
-void krl_end_section(struct reader *reader)
+int32_t krl_read_word(struct reader *reader)
 {
-    if (!reader->is_wrong && reader->left != 0)
-        krl_refuse_image(reader, "the image is damaged: a section is longer than its contents");
+    uint32_t found = word_at(reader->next);
+    reader->next += 4;
+    return (int32_t)found;
+}
+
+void krl_skip(struct reader *reader, int32_t words)
+{
+    reader->next += 4 * (size_t)words;
+}
+
+int32_t krl_read_optional(struct reader *reader)
+{
+    return krl_read_word(reader) - 1;
 }
 
 /* ---------------------------------------------------------------------------- strings */
 
-void krl_read_strings(struct reader *reader, struct section section)
+static void read_strings(struct reader *reader, size_t length)
 {
-    uint32_t count = section.length >= 4 ? krl_word_at(section.bytes) : 0;
-    if (count > section.length / 4 || 4 + 4 * (uint64_t)count > section.length) {
-        if (section.length > 0)
-            krl_refuse_image(reader, "the image is damaged: the strings end early");
-        return;
+    int32_t count = krl_read_word(reader);
+    struct krl_text *strings = krl_allocate_read(reader, count, sizeof *strings);
+    char *bytes = krl_allocate_read(reader, (int32_t)length, 1);
+    for (int32_t i = 0; i < count; i++)
+        strings[i].length = (uint32_t)krl_read_word(reader);
+    for (int32_t i = 0; i < count; i++) {
+        memcpy(bytes, reader->next, strings[i].length);
+        strings[i].bytes = bytes;
+        bytes += strings[i].length;
+        reader->next += strings[i].length;
     }
-    uint64_t start = 4 + 4 * (uint64_t)count, total = 0;
-    for (uint32_t i = 0; i < count; i++)
-        total += krl_word_at(section.bytes + 4 + 4 * i);
-    if (start + total > section.length) {
-        krl_refuse_image(reader, "the image is damaged: the strings end early");
-        return;
-    }
-    reader->strings = krl_allocate_read(reader, (int32_t)count, sizeof *reader->strings);
-    char *kept = krl_allocate_read(reader, (int32_t)total, 1);
-    if (reader->is_wrong)
-        return;
-    memcpy(kept, section.bytes + start, (size_t)total);
-    for (uint32_t i = 0; i < count; i++) {
-        reader->strings[i].bytes = kept;
-        reader->strings[i].length = krl_word_at(section.bytes + 4 + 4 * i);
-        kept += reader->strings[i].length;
-    }
-    reader->string_count = count;
+    reader->strings = strings;
 }
 
 struct krl_text krl_read_string(struct reader *reader)
 {
-    uint32_t number = krl_read_choice(reader, reader->string_count);
-    struct krl_text none = {"", 0};
-    return reader->is_wrong ? none : reader->strings[number];
+    return reader->strings[krl_read_word(reader)];
 }
 
 struct krl_letters krl_read_letters(struct reader *reader)
@@ -109,34 +64,51 @@ struct krl_letters krl_read_letters(struct reader *reader)
     struct krl_text text = krl_read_string(reader);
     krl_cell *cells = krl_allocate_read(reader, (int32_t)text.length, sizeof *cells);
     struct krl_letters found = {cells, 0};
-    for (uint32_t place = 0; place < text.length && cells != NULL; place++) {
+    for (uint32_t place = 0; place < text.length; place++) {
         uint8_t first = (uint8_t)text.bytes[place];
-        int is_pair = first >= 0xc0 && place + 1 < text.length;
-        int32_t code = is_pair ? (first & 3) << 6 | (text.bytes[++place] & 0x3f) : first;
+        int32_t code = first >= 0xc0 ? (first & 3) << 6 | (text.bytes[++place] & 0x3f) : first;
         cells[found.count++] = krl_of_int(code);
     }
     return found;
 }
 
-/* ---------------------------------------------------------------------------- types, modes */
-
-int32_t krl_read_type_number(struct reader *reader)
-{
-    return (int32_t)krl_read_choice(reader, (uint32_t)reader->program->type_count);
-}
-
 struct krl_passed krl_read_passed(struct reader *reader)
 {
     struct krl_passed passed;
-    passed.mode = (enum krl_mode)krl_read_choice(reader, 3);
-    passed.type = krl_read_type_number(reader);
-    passed.dimensions = (int32_t)krl_read_choice(reader, KRL_MOST_DIMENSIONS + 1);
-    if (reader->is_wrong) {
-        passed.dimensions = 0;
-        passed.type = 0;
-    } else if ((passed.mode == KRL_BY_VIEW) != (passed.dimensions > 0))
-        krl_refuse_image(reader, "a view has 1 to 3 dimensions, anything else has none");
-    else if (passed.mode == KRL_BY_VIEW && reader->program->types[passed.type].form == KRL_ARRAY)
-        krl_refuse_image(reader, "the elements of an array cannot be arrays");
+    passed.mode = (enum krl_mode)krl_read_word(reader);
+    passed.type = krl_read_word(reader);
+    passed.dimensions = krl_read_word(reader);
     return passed;
+}
+
+/* ---------------------------------------------------------------------------- the image */
+
+uint32_t krl_checksum(const uint8_t *image)
+{
+    return word_at(image + CHECKSUM);
+}
+
+int krl_read_image(struct krl_program *program, const uint8_t *image)
+{
+    struct reader reader = {0};
+    size_t length = word_at(image + LENGTH_OF_STRINGS);
+    memset(program, 0, sizeof *program);
+    reader.program = program;
+    reader.next = image + STRINGS;
+    if (setjmp(reader.no_memory)) {
+        krl_free_program(program);
+        return 0;
+    }
+    /* An input takes four words of the image, so there cannot be more. */
+    reader.inputs = krl_allocate_read(&reader, (int32_t)(word_at(image + LENGTH) / 16), sizeof *reader.inputs);
+    read_strings(&reader, length);
+    reader.next = image + STRINGS + length;
+    krl_read_types(&reader);
+    krl_read_texts(&reader);
+    program->asks = krl_read_entries(&reader, &program->ask_count);
+    program->builtins = krl_read_entries(&reader, &program->builtin_count);
+    krl_read_data(&reader);
+    krl_read_initial(&reader);
+    krl_read_codes(&reader);
+    return 1;
 }

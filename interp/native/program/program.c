@@ -1,7 +1,6 @@
-/* The arena that holds a program, and the reason why a program is refused. */
+/* The arena that holds a program. */
 #include "program.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 
 struct krl_block {
@@ -29,11 +28,4 @@ void krl_free_program(struct krl_program *program)
         free(block);
     }
     memset(program, 0, sizeof *program);
-}
-
-int krl_refuse(struct krl_refusal *why, const char *reason)
-{
-    if (why->text[0] == 0)
-        snprintf(why->text, sizeof why->text, "%s", reason);
-    return 0;
 }

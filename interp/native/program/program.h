@@ -143,19 +143,11 @@ struct krl_program {
     struct krl_block *memory;
 };
 
-/* Why an image is refused: one line, which contains no text of the image. */
-struct krl_refusal {
-    char text[120];
-};
-
 /* ---------------------------------------------------------------------------- program.c */
 
 /* Returns zeroed memory that is freed with the program, or NULL. */
 void *krl_allocate(struct krl_program *program, size_t count, size_t size);
 void krl_free_program(struct krl_program *program);
-
-/* Stores the reason, unless there is one already, and returns 0. */
-int krl_refuse(struct krl_refusal *why, const char *reason);
 
 /* ---------------------------------------------------------------------------- types.c */
 
@@ -165,14 +157,10 @@ int32_t krl_kind_at(const struct krl_program *program, int32_t number, int32_t o
 /* Whether a type is a scalar or an enumeration. */
 int krl_is_plain(const struct krl_program *program, int32_t type);
 
-/* Whether a word is a valid value of a scalar or an enumeration; the cell for a valid word. */
-int krl_is_word_of(const struct krl_program *program, int32_t word, int32_t type);
+/* Returns the cell for a word that is a value of a scalar or an enumeration. */
 krl_cell krl_cell_of_word(int32_t word, int32_t type);
 
-/* Returns the variable of the data lists that contains a cell, or NULL. */
-const struct krl_variable *krl_data_at(const struct krl_program *program, int32_t address);
-
-/* Returns the parameter or local that contains a cell of the frame, or NULL. */
+/* Returns the parameter or local that contains a cell of the frame. */
 const struct krl_slot *krl_slot_at(const struct krl_code *code, int32_t offset);
 
 #endif

@@ -36,22 +36,6 @@ int32_t krl_kind_at(const struct krl_program *program, int32_t number, int32_t o
     return number;
 }
 
-int krl_is_word_of(const struct krl_program *program, int32_t word, int32_t type)
-{
-    switch (type) {
-    case KRL_TYPE_INT:
-        return 1;
-    case KRL_TYPE_REAL:
-        return krl_is_finite(krl_real_of_bits((uint32_t)word));
-    case KRL_TYPE_BOOL:
-        return word == 0 || word == 1;
-    case KRL_TYPE_CHAR:
-        return word >= 0 && word <= 255;
-    default:
-        return word >= 0 && word < program->types[type].count;
-    }
-}
-
 krl_cell krl_cell_of_word(int32_t word, int32_t type)
 {
     enum krl_tag tag = type == KRL_TYPE_REAL   ? KRL_TAG_REAL
@@ -60,26 +44,9 @@ krl_cell krl_cell_of_word(int32_t word, int32_t type)
     return krl_tagged(tag, (uint32_t)word);
 }
 
-const struct krl_variable *krl_data_at(const struct krl_program *program, int32_t address)
-{
-    int32_t low = 0, high = program->data_count - 1;
-    if (address < 0 || address >= program->data_cells)
-        return NULL;
-    while (low < high) {
-        int32_t middle = (low + high + 1) / 2;
-        if (program->data[middle].address <= address)
-            low = middle;
-        else
-            high = middle - 1;
-    }
-    return &program->data[low];
-}
-
 const struct krl_slot *krl_slot_at(const struct krl_code *code, int32_t offset)
 {
     int32_t low = 0, high = code->slot_count - 1;
-    if (offset < 0 || offset >= code->frame)
-        return NULL;
     while (low < high) {
         int32_t middle = (low + high + 1) / 2;
         if (code->slots[middle].offset <= offset)

@@ -252,7 +252,7 @@ static void land(struct krl_machine *machine)
     }
 }
 
-int krl_translate(struct krl_machine *machine, struct krl_refusal *why)
+int krl_translate(struct krl_machine *machine)
 {
     struct translator at = {0};
     struct krl_program *program = &machine->program;
@@ -261,7 +261,6 @@ int krl_translate(struct krl_machine *machine, struct krl_refusal *why)
         most = program->codes[number].stack > most ? program->codes[number].stack : most;
     at.machine = machine;
     at.program = program;
-    at.why = why;
     at.stack = krl_allocate(program, (size_t)most + 8, sizeof *at.stack);
     at.capacity = 256;
     at.steps = malloc((size_t)at.capacity * sizeof *at.steps);
@@ -271,7 +270,7 @@ int krl_translate(struct krl_machine *machine, struct krl_refusal *why)
     machine->steps = at.steps;
     machine->arrays = at.arrays;
     if (at.stack == NULL || machine->routines == NULL || at.steps == NULL || at.arrays == NULL)
-        return krl_refuse(why, "there is not enough memory for the program");
+        return 0;
     for (int32_t number = 0; number < program->code_count; number++) {
         const struct krl_code *body = &program->codes[number];
         struct krl_routine *routine = &machine->routines[number];
@@ -286,7 +285,7 @@ int krl_translate(struct krl_machine *machine, struct krl_refusal *why)
             machine->routines[body->owner].is_owner = 1;
         routine->steps = krl_allocate(program, (size_t)body->length, sizeof *routine->steps);
         if (routine->steps == NULL)
-            return krl_refuse(why, "there is not enough memory for the program");
+            return 0;
     }
     for (int32_t number = 0; number < program->code_count && !at.is_wrong; number++) {
         at.code = &program->codes[number];

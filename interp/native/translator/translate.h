@@ -26,7 +26,6 @@ struct translator {
     const struct krl_program *program;
     const struct krl_code *code;
     struct krl_routine *routine;
-    struct krl_refusal *why;
     struct krl_step *steps;
     int32_t count;
     int32_t capacity;
@@ -172,7 +171,7 @@ void krl_call_builtin(struct translator *at, int32_t place);
 
 /* ---------------------------------------------------------------------------- translate.c */
 
-/* Translates all code objects. Returns 0, with the reason in `why`, if there is not enough memory. */
-int krl_translate(struct krl_machine *machine, struct krl_refusal *why);
+/* Translates all code objects. Returns 0 if there is not enough memory. */
+int krl_translate(struct krl_machine *machine);
 
 #endif

@@ -14,7 +14,6 @@ struct krl_step *krl_emit(struct translator *at, enum krl_step_op op)
                                      ? realloc(at->steps, (size_t)capacity * sizeof *steps)
                                      : NULL;
         if (steps == NULL) {
-            krl_refuse(at->why, "there is not enough memory for the program");
             at->is_wrong = 1;
             return &spare;
         }
@@ -41,7 +40,6 @@ int32_t krl_add_array(struct translator *at, struct krl_array array)
         int32_t capacity = 2 * at->array_capacity + 64;
         struct krl_array *arrays = realloc(at->arrays, (size_t)capacity * sizeof *arrays);
         if (arrays == NULL) {
-            krl_refuse(at->why, "there is not enough memory for the program");
             at->is_wrong = 1;
             return 0;
         }
