@@ -25,10 +25,9 @@ from interp.controller.quiet_time import QuietTime
 from interp.controller.requests.computed_variables import connect_computed
 from interp.controller.requests.motion_requests import MotionRequests
 from interp.controller.requests.predefined_routines import PredefinedRoutines
-from interp.controller.requests.request_table import RequestTable
 from interp.controller.requests.variable_access import VariableAccess
 from interp.controller.requests.waits import Waits
-from interp.controller.scheduler import HOUR, RunOutcome, Scheduler
+from interp.controller.scheduler import HOUR, Handlers, RunOutcome, Scheduler
 from interp.controller.spline_stops import SplineStops
 from interp.controller.state.declared_interrupts import Interrupts, interrupt_list
 from interp.controller.state.error_variable import ErrorVariable
@@ -118,18 +117,33 @@ class Controller:
         state.observers += [arm.changed, player.changed]
         state.messages.listeners += [player.shown, panel.shown]
         channels.listeners.append(player.received)
+        variables = VariableAccess(state, queue, advance, automatic, errors)
+        routines = PredefinedRoutines(state, arm, frames, channels, advance)
         motions = MotionRequests(state, queue)
-        table = _table(
-            state,
-            VariableAccess(state, queue, advance, automatic, errors),
-            PredefinedRoutines(state, arm, frames, channels, advance),
-            waits,
-            motions,
-            queue,
-            interrupts,
-            cyclic,
-            advance,
-        )
+        handlers: Handlers = {
+            requests.Read: variables.read,
+            requests.Write: variables.write,
+            requests.EmptyError: variables.empty_error,
+            requests.Invoke: routines.call,
+            requests.Wait: waits.wait,
+            requests.Poll: waits.poll,
+            requests.Slice: waits.slice,
+            requests.Skip: lambda task, one: state.skip(task.name, one.at, one.fault),
+            requests.Halt: waits.halt,
+            requests.Confirm: waits.confirm,
+            requests.Continue: advance.exempt,
+            requests.StopAdvance: advance.stop_here,
+            requests.Move: motions.move,
+            requests.MoveSpline: motions.move,
+            requests.MoveEmily: motions.move_emily,
+            requests.SetTrigger: queue.set_trigger,
+            requests.DeclareInterrupt: interrupts.declare,
+            requests.SwitchInterrupt: interrupts.switch,
+            requests.BrakeArm: interrupts.brake,
+            requests.Resume: interrupts.resume,
+            requests.SetCyclicFlag: cyclic.set_flag,
+            requests.SwitchSignal: cyclic.switch_signal,
+        }
         self._scheduler = Scheduler(
             state,
             tasks,
@@ -141,7 +155,7 @@ class Controller:
             SplineStops(state, arm, queue, panel),
             advance,
             waits,
-            table,
+            handlers,
             panel,
             player,
             tracking,
@@ -240,41 +254,3 @@ def _task(
         sink.left = [interrupts.forget, partial(errors.forget, name)]
     state.variables.connect([list_name], Computed(partial(interrupt_list, interrupts)))
     return Task(name, executor, sink, interrupts)
-
-
-def _table(
-    state: ControllerState,
-    variables: VariableAccess,
-    routines: PredefinedRoutines,
-    waits: Waits,
-    motions: MotionRequests,
-    queue: MotionQueue,
-    interrupts: InterruptUnit,
-    cyclic: CyclicEvaluation,
-    advance: AdvanceRun,
-) -> RequestTable:
-    """Return the handlers of all requests but those that end a program, for the scheduler."""
-    table = RequestTable()
-    table.add(requests.Read, variables.read)
-    table.add(requests.Write, variables.write)
-    table.add(requests.EmptyError, variables.empty_error)
-    table.add(requests.Invoke, routines.call)
-    table.add(requests.Wait, waits.wait)
-    table.add(requests.Poll, waits.poll)
-    table.add(requests.Slice, waits.slice)
-    table.add(requests.Skip, lambda task, one: state.skip(task.name, one.at, one.fault))
-    table.add(requests.Halt, waits.halt)
-    table.add(requests.Confirm, waits.confirm)
-    table.add(requests.Continue, advance.exempt)
-    table.add(requests.StopAdvance, advance.stop_here)
-    table.add(requests.Move, motions.move)
-    table.add(requests.MoveSpline, motions.move)
-    table.add(requests.MoveEmily, motions.move_emily)
-    table.add(requests.SetTrigger, queue.set_trigger)
-    table.add(requests.DeclareInterrupt, interrupts.declare)
-    table.add(requests.SwitchInterrupt, interrupts.switch)
-    table.add(requests.BrakeArm, interrupts.brake)
-    table.add(requests.Resume, interrupts.resume)
-    table.add(requests.SetCyclicFlag, cyclic.set_flag)
-    table.add(requests.SwitchSignal, cyclic.switch_signal)
-    return table

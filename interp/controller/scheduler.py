@@ -8,9 +8,9 @@ which anything can happen. Nothing depends on wall-clock time, so a program has 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from interp.controller.inputs.operator_panel import OperatorPanel
 from interp.controller.inputs.script_player import ScriptPlayer
@@ -21,7 +21,6 @@ from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.arm_control import ArmControl
 from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.quiet_time import REPEATABLE, QuietTime
-from interp.controller.requests.request_table import RequestTable
 from interp.controller.requests.waits import Waits
 from interp.controller.spline_stops import SplineStops
 from interp.controller.state.state import ControllerState
@@ -29,7 +28,7 @@ from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.executor import SliceScheduling
 from interp.port.requests import At, Crash, End, Fail, Poll, Request, Slice, StopAdvance, Wait
 from interp.robot.simulation.robot import RobotFault
-from interp.values.faults import BudgetExhausted, LinkError, RuntimeFailure
+from interp.values.faults import BudgetExhausted, Fault, LinkError, RuntimeFailure
 from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -38,6 +37,9 @@ if TYPE_CHECKING:
 #: How a run ended: at the end of the program; at a HALT without a later start; by a fault; because
 #: the program used up its statements; because the time is over; by a defect of ours.
 Ending = Literal["end", "halt", "fault", "budget", "time", "crash"]
+
+#: The handlers of all requests but those that end a program; they may raise `Fault`.
+Handlers = dict[type[Request], Callable[[Task, Any], Answer]]
 
 #: A run lasts an hour of virtual time at most, by default.
 HOUR: Final = 3_600_000_000
@@ -78,7 +80,7 @@ class Scheduler:
     spline_stops: SplineStops
     advance: AdvanceRun
     waits: Waits
-    requests: RequestTable
+    handlers: Handlers
     panel: OperatorPanel
     player: ScriptPlayer
     tracking: Tracking | None
@@ -311,7 +313,11 @@ class Scheduler:
         if not isinstance(request, REPEATABLE):
             self.quiet.acts += 1
         changes = self._changes
-        answer = self.requests.answer(task, request)
+        answer: Answer
+        try:
+            answer = self.handlers[type(request)](task, request)
+        except Fault as error:
+            answer = error
         self.waits.acted(task, request, has_changed=self._changes != changes)
         is_passed = isinstance(request, StopAdvance) and answer is None
         if is_passed and most is not None and task.exempt_line is None:
