@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from random import Random
@@ -54,35 +54,31 @@ def try_laws(
     ``scheduler`` (`support.parallel.ordered_map`). ``on_done`` is called with 1 after each law.
     """
     running = [case for case in cases if case.phase == "run"]
-    tasks = ((law.name, running, programs, seed) for law in LAWS)
+    tasks = ((number, running, programs, seed) for number in range(len(LAWS)))
+    counts = ordered_map(_tried, tasks, jobs=max(1, jobs), scheduler=scheduler)
     found = []
-    for counted in ordered_map(_tried, tasks, jobs=max(1, jobs), scheduler=scheduler):
-        found.append(_whole(counted))
+    for law, counted in zip(LAWS, counts, strict=True):
+        found.append(LawResult(law, *counted))
         on_done(1)
     return found
 
 
-#: What is sent between processes: name of the law, applied, inapplicable, broken.
-_Counted = tuple[str, int, int, tuple[Attempt, ...]]
-
-
-def _law(name: str) -> Law:
-    return next(law for law in LAWS if law.name == name)
-
-
-def _whole(counted: _Counted) -> LawResult:
-    name, applied, inapplicable, broken = counted
-    return LawResult(_law(name), applied, inapplicable, broken)
-
-
-def _tried(name: str, cases: Sequence[Case], programs: int, seed: int) -> _Counted:
-    law = _law(name)
+def _tried(
+    number: int, cases: Sequence[Case], programs: int, seed: int
+) -> tuple[int, int, tuple[Attempt, ...]]:
+    """Return for the law with this number what `LawResult` has besides the law."""
+    law = LAWS[number]
     drawn = list(cases)
     Random(f"{seed}/{law.name}").shuffle(drawn)
     applied, inapplicable = 0, 0
     broken: list[Attempt] = []
     most = programs * _LOOKED_AT
-    for source in (_of_cases(drawn), _generated(most, seed), _moving(most, seed)):
+    samples = (
+        map(Program, drawn),
+        (_program(seed, number) for number in range(most)),
+        (_moving_program(seed, number) for number in range(most)),
+    )
+    for source in samples:
         wanted = programs
         for program in source:
             if not wanted:
@@ -95,24 +91,12 @@ def _tried(name: str, cases: Sequence[Case], programs: int, seed: int) -> _Count
             applied += 1
             if attempt.difference:
                 broken.append(attempt)
-    return name, applied, inapplicable, tuple(broken)
-
-
-def _of_cases(cases: Sequence[Case]) -> Iterator[Program]:
-    return (Program(case) for case in cases)
-
-
-def _moving(most: int, seed: int) -> Iterator[Program]:
-    return (_moving_program(seed, number) for number in range(most))
+    return applied, inapplicable, tuple(broken)
 
 
 @lru_cache(maxsize=256)
 def _moving_program(seed: int, number: int) -> Program:
     return Program.of_sample(moving_program(seed, number), f"moving/{seed}/{number}", seconds=60.0)
-
-
-def _generated(most: int, seed: int) -> Iterator[Program]:
-    return (_program(seed, number) for number in range(most))
 
 
 @lru_cache(maxsize=256)
