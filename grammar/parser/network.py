@@ -8,7 +8,7 @@ that rule, so trying a candidate edit costs one automaton.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 
 from grammar.notation.model import Grammar, Rule
@@ -84,6 +84,10 @@ class Reach(dict[int, Sequence[_Way]]):
     __eq__ = object.__eq__
 
 
+class LeftRecursionError(Exception):
+    """A rule calls itself before it has read a token."""
+
+
 @dataclass(frozen=True, slots=True)
 class Network:
     """The whole grammar, with positions numbered across rules.
@@ -101,7 +105,7 @@ class Network:
     rule: Sequence[str]
     entry: Mapping[str, int]
     start: int
-    known: dict[int, Reach] = field(default_factory=dict, compare=False, repr=False)
+    known: dict[int, Reach | None] = field(default_factory=dict, compare=False, repr=False)
 
     def passing(self) -> frozenset[int]:
         """Return the positions at which the only possible step is to leave the rule."""
@@ -109,11 +113,14 @@ class Network:
         return frozenset(p for p, (f, s, c) in enumerate(ways) if f and not s and not c)
 
     def reach(self, position: int) -> Reach:
-        """Return what can be done at a position. Does not end for a left-recursive grammar."""
+        """Return what can be done at a position; raises `LeftRecursionError`."""
         found = self.known.get(position)
         return self._reach(position) if found is None else found
 
     def _reach(self, position: int) -> Reach:
+        if position in self.known:
+            raise LeftRecursionError
+        self.known[position] = None  # until it is known
         rules = {self.rule[position]}
         ends = False
         steps = [position]
@@ -188,70 +195,18 @@ def with_rule(network: Network, grammar: Grammar, rule: Rule, lexer: Lexer) -> N
         final=tuple(final),
         rule=(*network.rule, *(rule.name for _ in range(added))),
         automata={**network.automata, rule.name: automaton},
-        known={p: r for p, r in network.known.items() if rule.name not in r.rules},
+        known={p: r for p, r in network.known.items() if r and rule.name not in r.rules},
     )
 
 
-def may_be_empty(network: Network) -> frozenset[str]:
-    """Return the rules that can be read without a token."""
-    return _emptied(network, frozenset(), network.entry)
-
-
-def _emptied(network: Network, known: frozenset[str], rules: Iterable[str]) -> frozenset[str]:
-    """Return ``known`` and those of ``rules`` that may be empty given these."""
-    found = set(known)
-    while True:
-        more = {r for r in rules if r not in found and _opening(network, r, found)[1]}
-        if not more:
-            return frozenset(found)
-        found |= more
-
-
-def _opening(network: Network, name: str, empty: Collection[str]) -> tuple[set[str], list[int]]:
-    """Return the rules that a rule may call before it reads a token, and where it may end then."""
-    entry = network.entry[name]
-    callees: set[str] = set()
-    steps = [entry]
-    for position in steps:  # grows while it is walked
-        for callee, back in network.calls[position]:
-            called = network.rule[callee]
-            callees.add(called)
-            if called in empty and back not in steps:
-                steps.append(back)
-    return callees, [p for p in steps if network.final[p]]
-
-
-def is_left_recursive(
-    network: Network, changed: Iterable[str] | None = None, empty: frozenset[str] = frozenset()
-) -> bool:
+def is_left_recursive(network: Network) -> bool:
     """Return whether a rule can call itself before it has read a token.
 
-    The simulation of such a network would not end. If only the rules ``changed`` differ from a
-    network without left recursion, whose `may_be_empty` is ``empty``, only rules that can be
-    reached from these are examined.
+    The simulation of such a network would not end.
     """
-    rules: Collection[str] = network.entry if changed is None else frozenset(changed)
-    known = _emptied(network, empty.difference(rules), rules)
-    if changed is not None and known != empty:
-        rules, known = network.entry, may_be_empty(network)
-    leading: dict[str, set[str]] = {}
-    return any(_reaches(network, leading, known, name) for name in rules)
-
-
-def _reaches(
-    network: Network, leading: dict[str, set[str]], empty: frozenset[str], name: str
-) -> bool:
-    """Return whether a rule can be reached from itself."""
-    seen: set[str] = set()
-    todo = [name]
-    while todo:
-        here = todo.pop()
-        if here not in leading:
-            leading[here] = _opening(network, here, empty)[0]
-        for callee in leading[here]:
-            if callee == name:
-                return True
-            if callee not in seen:
-                seen.add(callee)
-                todo.append(callee)
+    try:
+        for entry in network.entry.values():
+            network.reach(entry)
+    except LeftRecursionError:
+        return True
     return False

@@ -17,7 +17,7 @@ from typing import NamedTuple
 from grammar.notation.model import Grammar
 from grammar.parser.lazy_automaton import Automaton, Configuration, Core, Stack, Tail
 from grammar.parser.lexer import EOF, SKIPPED, lexer_of
-from grammar.parser.network import Network, Reach, may_be_empty, network_of
+from grammar.parser.network import Network, Reach, network_of
 
 #: A state without the automaton that holds it: each configuration as its position and the frames
 #: below it from the top down, sorted. Means the same in every recogniser of the same grammar.
@@ -52,11 +52,6 @@ class Recognizer(Automaton):
         """Where every text begins."""
         kernel = frozenset([(self.network.start, self._bottom)])
         return State(self._core(kernel), self._no_tail)
-
-    @cached_property
-    def empty_rules(self) -> frozenset[str]:
-        """Rules that can be read without a token."""
-        return may_be_empty(self.network)
 
     # ------------------------------------------------------------------------ reading
 

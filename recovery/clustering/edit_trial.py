@@ -50,19 +50,18 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
         for edit in edits:
             if isinstance(edit, AddToken):
                 lexer = lexer.with_keyword(edit.name)
-        changed = None
         if any(isinstance(e, AddRule | RemoveRule) for e in edits):
             network = network_of(grammar, lexer)
         else:
             network = recognizer.network
-            changed = changed_rules(edits)
-            for name in sorted(changed):
+            is_left_recursive(network)  # it is not; what it reaches is then known to the new one
+            for name in sorted(changed_rules(edits)):
                 network = with_rule(network, grammar, grammar.by_name[name], lexer)
             if network.lexer is not lexer:  # words were reserved and no rule changed
                 network = replace(network, lexer=lexer)
     except (GrammarError, KeyError):
         return None
-    if is_left_recursive(network, changed, recognizer.empty_rules):
+    if is_left_recursive(network):
         return None
     found = Recognizer(grammar, network)
     found.most_ways = MOST_CONFIGURATIONS_TRIED
