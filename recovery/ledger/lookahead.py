@@ -9,21 +9,16 @@ a parser that looks ahead without knowing the caller of a rule.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal as OneOf
+from itertools import chain
+from operator import itemgetter
+from typing import Literal
 
-from grammar.notation.model import (
-    Alternative,
-    Element,
-    Grammar,
-    Group,
-    Literal,
-    Reference,
-    Repeat,
-    Rule,
-)
+from grammar.notation.addresses import Address, element_at, sequence_at
+from grammar.notation.model import Alternative, Element, Grammar, Repeat, Rule
+from grammar.parser.ordered_network import FIRST, LAST, Step, ordered_automaton
 
 #: Greatest lookahead in tokens; decisions that need more are not distinguished.
 _FARTHEST = 2
@@ -40,7 +35,7 @@ class Decision:
     """
 
     rule: str
-    kind: OneOf["choice", "optional", "repetition"]
+    kind: Literal["choice", "optional", "repetition"]
     tokens: int
     branches: tuple[str, ...]
     alike: tuple[str, ...]
@@ -81,7 +76,7 @@ class _Fork:
     """A decision: the text of each branch with its first node."""
 
     rule: str
-    kind: OneOf["choice", "optional", "repetition"]
+    kind: Literal["choice", "optional", "repetition"]
     branches: tuple[tuple[str, _Node], ...]
 
 
@@ -91,84 +86,26 @@ class _Graph:
     def __init__(self, grammar: Grammar) -> None:
         self.grammar = grammar
         self.forks: list[_Fork] = []
-        self._free: list[list[_Node]] = []  # steps that read nothing
-        self._reads: list[tuple[str, _Node] | None] = []  # a token, and the node after it
-        self._calls: list[tuple[str, _Node] | None] = []  # a rule, and the node to return to
+        self._steps: list[list[tuple[str | None, _Node]]] = []  # a symbol, and the node after it
+        self._entry: dict[str, _Node] = {}
         self._ends: dict[_Node, str] = {}
+        for rule in grammar.rules:
+            if not rule.is_lexer:
+                base = len(self._steps)
+                steps = ordered_automaton(grammar, rule).steps
+                self._entry[rule.name], self._ends[base + LAST] = base + FIRST, rule.name
+                self._steps += ([(s.symbol, base + s.target) for s in some] for some in steps)
+                self.forks += _forks(rule, chain.from_iterable(steps), base)
         self._returns: dict[str, list[_Node]] = defaultdict(list)
-        rules = [rule for rule in grammar.rules if not rule.is_lexer]
-        self._names = frozenset(rule.name for rule in rules)
-        self._entry = {rule.name: self._node() for rule in rules}
-        for rule in rules:
-            end = self._choice(rule, rule.alternatives, self._entry[rule.name])
-            self._ends[end] = rule.name
+        for symbol, target in chain.from_iterable(self._steps):
+            if symbol in self._entry:
+                self._returns[symbol].append(target)
         self._texts = {name: text for text, name in grammar.literal_tokens.items()}
         self.ahead = cache(self._ahead)
 
     def spelled(self, token: str) -> str:
         """Return a token as people read it: its text if it has only one, else its name."""
         return self._texts.get(token, token)
-
-    def _node(self) -> _Node:
-        self._free.append([])
-        self._reads.append(None)
-        self._calls.append(None)
-        return len(self._free) - 1
-
-    def _choice(self, rule: Rule, alternatives: Sequence[Alternative], start: _Node) -> _Node:
-        end = self._node()
-        branches: list[tuple[str, _Node]] = []
-        fork = self._fork(len(alternatives) > 1)
-        for alternative in alternatives:
-            first = last = self._node()
-            self._free[start].append(first)
-            branches.append((_written(rule, alternative), first))
-            for element in alternative.elements:
-                last = self._element(rule, element, last)
-            self._free[last].append(end)
-        if fork is not None:
-            self.forks[fork] = _Fork(rule.name, "choice", tuple(branches))
-        return end
-
-    def _fork(self, wanted: bool) -> int | None:
-        """Reserve the index of a decision, which comes before those inside its branches."""
-        if not wanted:
-            return None
-        self.forks.append(_Fork("", "choice", ()))
-        return len(self.forks) - 1
-
-    def _element(self, rule: Rule, element: Element, start: _Node) -> _Node:
-        match element:
-            case Group(alternatives=alternatives):
-                return self._choice(rule, alternatives, start)
-            case Repeat(item=item, operator=operator):
-                fork = self._fork(wanted=True)
-                assert fork is not None
-                before, after = self._node(), self._node()
-                self._free[start].append(before)
-                end = self._element(rule, item, before)
-                self._free[end].append(after)
-                if operator != "+":
-                    self._free[start].append(after)
-                if operator != "?":
-                    self._free[end].append(before)
-                self.forks[fork] = _Fork(
-                    rule.name,
-                    "optional" if operator == "?" else "repetition",
-                    ((_written(rule, element), before), ("what follows it", after)),
-                )
-                return after
-            case Reference(name=name) if name in self._names:
-                end = self._node()
-                self._calls[start] = (name, end)
-                self._returns[name].append(end)
-                return end
-            case Reference() | Literal():
-                end = self._node()
-                self._reads[start] = (self.grammar.token_of(element), end)
-                return end
-            case _:
-                raise AssertionError("sets of characters do not occur in parser rules")
 
     def _ahead(self, place: _Place) -> Mapping[str, frozenset[_Place]]:
         """Return the tokens that can come at a place, with the places after each."""
@@ -177,12 +114,15 @@ class _Graph:
         todo = [place]
         while todo:
             node, returns = todo.pop()
-            reached: list[_Place] = [(free, returns) for free in self._free[node]]
-            read, call, ended = self._reads[node], self._calls[node], self._ends.get(node)
-            if read is not None:
-                found[read[0]].add((read[1], returns))
-            if call is not None:
-                reached.append((self._entry[call[0]], (*returns, call[1])))
+            reached: list[_Place] = []
+            for symbol, target in self._steps[node]:
+                if symbol is None:
+                    reached.append((target, returns))
+                elif symbol in self._entry:
+                    reached.append((self._entry[symbol], (*returns, target)))
+                else:
+                    found[symbol].add((target, returns))
+            ended = self._ends.get(node)
             if ended is not None and returns:
                 reached.append((returns[-1], returns[:-1]))
             elif ended is not None:
@@ -194,6 +134,29 @@ class _Graph:
                     seen.add(other)
                     todo.append(other)
         return {token: frozenset(places) for token, places in found.items()}
+
+
+def _forks(rule: Rule, steps: Iterable[Step], base: _Node) -> list[_Fork]:
+    """Return the decisions of a rule, each before those inside its branches."""
+    choices: dict[Address, list[tuple[str, _Node]]] = defaultdict(list)
+    parts: dict[Address, dict[str | None, _Node]] = defaultdict(dict)
+    for step in steps:
+        if step.sign == "alternative":
+            text = _written(rule, sequence_at(rule, step.at))
+            choices[step.at[:-1]].append((text, base + step.target))
+        elif step.sign in ("round", "end"):
+            parts[step.at][step.sign] = base + step.target
+    found = {
+        (at, True): _Fork(rule.name, "choice", tuple(branches))
+        for at, branches in choices.items()
+        if len(branches) > 1
+    }
+    for at, nodes in parts.items():
+        element = element_at(rule, at)
+        is_optional = isinstance(element, Repeat) and element.operator == "?"
+        branches = (_written(rule, element), nodes["round"]), ("what follows it", nodes["end"])
+        found[at, False] = _Fork(rule.name, "optional" if is_optional else "repetition", branches)
+    return [fork for _, fork in sorted(found.items(), key=itemgetter(0))]
 
 
 def _written(rule: Rule, node: Element | Alternative) -> str:
