@@ -4,17 +4,14 @@ Only git itself runs, as a child process, and only to read objects. Nothing is c
 or filter of a repository runs, and git never asks for a password.
 """
 
+import io
 import os
 import subprocess
-from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import IO, Self
 
 _MIRROR_DEPTH = 3
 """How many folders below OWNER+NAME a mirror's git directory may lie."""
-
-_CHUNK = 1 << 16
 
 # If set by a surrounding git command, these would direct git to another repository.
 _REPOSITORY_VARIABLES = (
@@ -92,80 +89,40 @@ def fetch_all(url: str, into: Path) -> None:
     _git(["clone", "--quiet", "--bare", "--", url, str(into)])
 
 
-class BlobReader:
-    """Reads many files of a git directory through one git process; a context manager."""
+def read_files(
+    git_dir: Path, revision: str, sizes: Mapping[str, int]
+) -> Iterator[tuple[str, bytes | None]]:
+    """Yield the files at `revision` that have one of the paths, each with its bytes.
 
-    def __init__(self, git_dir: Path) -> None:
-        """Start git in `git_dir`; raises GitError if git is not installed."""
-        command = ["git", f"--git-dir={git_dir.resolve()}", "cat-file", "--batch"]
-        self._git_dir = git_dir
-        try:
-            self._process = subprocess.Popen(
-                command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                env=_environment(),
-            )
-        except FileNotFoundError as error:
-            raise GitError("git is not installed") from error
+    The bytes are None if the size is not the one given in `sizes`. Raises GitError if git cannot
+    read `git_dir`.
+    """
+    found = _objects(git_dir, "--batch-check=%(objecttype) %(objectsize)", revision, sizes)
+    kinds = dict(zip(sizes, found.splitlines(), strict=True))
+    same = [path for path, size in sizes.items() if kinds[path] == b"blob %d" % size]
+    contents = io.BytesIO(_objects(git_dir, "--batch", revision, same))
+    for path, kind in kinds.items():
+        if path in same:
+            contents.readline()
+            yield path, contents.read(sizes[path])
+            contents.readline()
+        elif kind.startswith(b"blob "):
+            yield path, None
 
-    def __enter__(self) -> Self:
-        """Return itself."""
-        return self
 
-    def __exit__(self, *_error: object) -> None:
-        """End the git process."""
-        with suppress(OSError):  # git may have ended already
-            self._stdin.close()
-        self._stdout.close()
-        self._process.wait()
-
-    def read(self, revision: str, path: str, limit: int) -> bytes | None:
-        """Return the bytes of `path` at `revision`, or None if there is no such file.
-
-        Of a longer file only `limit + 1` bytes are returned. Raises GitError if git stops.
-        """
-        try:
-            self._stdin.write(f"{revision}:{path}\n".encode())
-            self._stdin.flush()
-        except OSError as error:
-            raise self._stopped() from error
-        header = self._stdout.readline()
-        if not header.endswith(b"\n"):
-            raise self._stopped()
-        match header.split():
-            case [_, b"blob", size] if size.isdigit():
-                return self._content(int(size), limit)
-            case [_, b"tree" | b"commit" | b"tag", size] if size.isdigit():
-                self._content(int(size), 0)
-        return None
-
-    def _content(self, size: int, limit: int) -> bytes:
-        kept = self._exactly(min(size, limit + 1))
-        rest = size - len(kept) + 1  # and the line end after it
-        while rest:
-            rest -= len(self._exactly(min(rest, _CHUNK)))
-        return kept
-
-    def _exactly(self, count: int) -> bytes:
-        data = self._stdout.read(count)
-        if len(data) != count:
-            raise self._stopped()
-        return data
-
-    def _stopped(self) -> GitError:
-        return GitError(f"git cannot read {self._git_dir}")
-
-    @property
-    def _stdin(self) -> IO[bytes]:
-        assert self._process.stdin is not None
-        return self._process.stdin
-
-    @property
-    def _stdout(self) -> IO[bytes]:
-        assert self._process.stdout is not None
-        return self._process.stdout
+def _objects(git_dir: Path, option: str, revision: str, paths: Iterable[str]) -> bytes:
+    """Return what git says of some files, in their order."""
+    command = ["git", f"--git-dir={git_dir.resolve()}", "cat-file", option]
+    given = "".join(f"{revision}:{path}\n" for path in paths).encode()
+    try:
+        done = subprocess.run(
+            command, input=given, capture_output=True, env=_environment(), check=True
+        )
+    except FileNotFoundError as error:
+        raise GitError("git is not installed") from error
+    except subprocess.CalledProcessError as error:
+        raise GitError(f"git cannot read {git_dir}") from error
+    return done.stdout
 
 
 def _git(arguments: Sequence[str]) -> None:

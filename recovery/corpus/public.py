@@ -12,17 +12,17 @@ import io
 import re
 import tempfile
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from recovery.corpus.git_objects import (
-    BlobReader,
     GitError,
     RefusedError,
     fetch_all,
     fetch_commit,
     find_mirror,
+    read_files,
 )
 from support.files.atomic_write import write_atomic
 from support.files.discovery import SUFFIXES
@@ -150,7 +150,7 @@ def fetch(
 
 def _from_mirror(
     source: PublicSource,
-    wanted: Iterable[KrlFile],
+    wanted: Sequence[KrlFile],
     target: Path,
     mirrors: Path,
     on_file: Callable[[int], None],
@@ -162,7 +162,7 @@ def _from_mirror(
 
 
 def _from_network(
-    source: PublicSource, wanted: Iterable[KrlFile], target: Path, on_file: Callable[[int], None]
+    source: PublicSource, wanted: Sequence[KrlFile], target: Path, on_file: Callable[[int], None]
 ) -> dict[str, str]:
     with tempfile.TemporaryDirectory(prefix="krl-fetch-", ignore_cleanup_errors=True) as scratch:
         pinned, whole = Path(scratch, "pinned"), Path(scratch, "whole")
@@ -181,7 +181,7 @@ def _from_network(
 def _take(
     git_dir: Path,
     source: PublicSource,
-    wanted: Iterable[KrlFile],
+    wanted: Sequence[KrlFile],
     target: Path,
     on_file: Callable[[int], None],
 ) -> dict[str, str]:
@@ -190,21 +190,17 @@ def _take(
     The pinned commit is asked first and the branch in force second: a repository may have been
     rewritten and still hold the same files.
     """
-    problems = {}
-    with BlobReader(git_dir) as repository:
-        for file in wanted:
-            why = "not in the repository any more"
-            for revision in (source.commit, "HEAD"):
-                content = repository.read(revision, file.path, file.size)
-                if content is None:
-                    continue
-                if hashlib.sha256(content).hexdigest() == file.sha256:
-                    write_atomic(target / file.path, content)
-                    on_file(1)
-                    break
-                why = "changed, its checksum is not the listed one"
-            else:
-                problems[file.path] = why
+    problems = {file.path: "not in the repository any more" for file in wanted}
+    for revision in (source.commit, "HEAD"):
+        left = {file.path: file for file in wanted if file.path in problems}
+        sizes = {path: file.size for path, file in left.items()}
+        for path, content in read_files(git_dir, revision, sizes):
+            if content is None or hashlib.sha256(content).hexdigest() != left[path].sha256:
+                problems[path] = "changed, its checksum is not the listed one"
+                continue
+            write_atomic(target / path, content)
+            del problems[path]
+            on_file(1)
     return problems
 
 

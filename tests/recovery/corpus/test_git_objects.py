@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from recovery.corpus.git_objects import BlobReader, GitError, fetch_commit, find_mirror
+from recovery.corpus.git_objects import GitError, fetch_commit, find_mirror, read_files
 
 
 def _git(folder: Path, *arguments: str) -> None:
@@ -62,33 +62,30 @@ def test_other_folders_are_no_mirror(tmp_path: Path) -> None:
     assert find_mirror(tmp_path / "gone", "someone/cell") is None
 
 
-def test_files_are_read_one_after_the_other(git_dir: Path) -> None:
-    """Blanks in names, lost files, folders and cut files do not put the reader out of step."""
-    with BlobReader(git_dir) as reader:
-        assert b"DEF a( )\nEND" == reader.read("HEAD", "R1/a b.src", 1000)
-        assert reader.read("HEAD", "R1/gone b.src", 1000) is None
-        assert reader.read("HEAD", "R1", 1000) is None
-        assert reader.read("0" * 40, "R1/a b.src", 1000) is None
-        assert b"; a\n; a" == reader.read("HEAD", "R1/long.src", 6)
-        assert 400_000 == len(reader.read("HEAD", "R1/long.src", 400_000) or b"")
-        assert b"DEF a( )\nEND" == reader.read("HEAD", "R1/a b.src", 12)
+def test_files_are_read(git_dir: Path) -> None:
+    """Blanks in names are no matter, what is lost or a folder is left out, and no size exceeded."""
+    sizes = {"R1/a b.src": 12, "R1/gone b.src": 12, "R1": 12, "R1/long.src": 6}
+    found = [("R1/a b.src", b"DEF a( )\nEND"), ("R1/long.src", None)]
+    assert found == list(read_files(git_dir, "HEAD", sizes))
+    assert [] == list(read_files(git_dir, "0" * 40, sizes))
+    whole = dict(read_files(git_dir, "HEAD", {"R1/long.src": 400_000, "R1/a b.src": 12}))
+    assert [b"; a\n" * 100_000, b"DEF a( )\nEND"] == list(whole.values())
 
 
 def test_surrounding_git_command_does_not_interfere(
     git_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Run from a git hook, the reader still reads the repository that it was given."""
+    """Run from a git hook, files are still read from the repository that is given."""
     _git(tmp_path, "init", "--quiet", "--bare", "other.git")
     monkeypatch.setenv("GIT_DIR", str(tmp_path / "other.git"))
     monkeypatch.setenv("GIT_OBJECT_DIRECTORY", str(tmp_path / "other.git" / "objects"))
-    with BlobReader(git_dir) as reader:
-        assert reader.read("HEAD", "R1/a b.src", 1000) is not None
+    assert list(read_files(git_dir, "HEAD", {"R1/a b.src": 12}))
 
 
 def test_what_is_no_repository_is_an_error(tmp_path: Path) -> None:
     """Reading where there is no repository raises the error that names the place."""
-    with BlobReader(tmp_path) as reader, pytest.raises(GitError, match="git cannot read"):
-        reader.read("HEAD", "a.src", 10)
+    with pytest.raises(GitError, match="git cannot read"):
+        list(read_files(tmp_path, "HEAD", {"a.src": 10}))
 
 
 @pytest.mark.parametrize("transport", ["http", "git", "ssh", "ext"])
@@ -103,6 +100,6 @@ def test_missing_git_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     """Without git, both reading and fetching say so."""
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(GitError, match="git is not installed"):
-        BlobReader(tmp_path)
+        list(read_files(tmp_path, "HEAD", {}))
     with pytest.raises(GitError, match="git is not installed"):
         fetch_commit("https://example.org", "0" * 40, tmp_path / "new")
