@@ -9,7 +9,7 @@ taken:
    under a grammar without ``STEP``.
 2. The line is dropped: the state before it.
 3. The context is another one, because an earlier line was not understood: any state in which a line
-   of some program can begin (`LineStates`).
+   of some program can begin (`line_states`).
 
 A line that can only be read because of guess 3, and a line that closes a block whose opening line
 was dropped, *follow* from an earlier failure and are marked so.
@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import accumulate, islice
 
@@ -98,24 +98,27 @@ class _Broken:
     mended: Spot | None  # guess 1
 
 
-class LineStates:
-    """The states in which a line can begin, found by the shortest programs through every rule."""
+def line_states(recognizer: Recognizer) -> Mapping[State, Sequence[int]]:
+    """Return states in which a line can begin, each with the shortest tokens found to lead to it.
 
-    def __init__(self, recognizer: Recognizer) -> None:
-        sentences = Sentences(recognizer.grammar)
-        kind_of = recognizer.lexer.kind_of
-        found: dict[tuple[Core, Tail], State] = {}
-        for rule in sentences.reachable:
-            for sentence in sentences.through(rule):
-                state = recognizer.start
-                for name in sentence:
-                    following = recognizer.step(state, kind_of[name])
-                    if following is None:  # the shortest context does not fit this alternative
-                        break
-                    state = following
-                    if kind_of[name] == recognizer.line_kind:
-                        found.setdefault((state.core, state.tail), state)
-        self.states = tuple(found.values())
+    They are those of the shortest programs through every rule, the first line left out.
+    """
+    sentences = Sentences(recognizer.grammar)
+    kind_of = recognizer.lexer.kind_of
+    found: dict[State, list[int]] = {}
+    for rule in sentences.reachable:
+        for sentence in sentences.through(rule):
+            kinds = [kind_of[name] for name in sentence]
+            state = recognizer.start
+            for end, kind in enumerate(kinds, 1):
+                following = recognizer.step(state, kind)
+                if following is None:  # the shortest context does not fit this alternative
+                    break
+                state = following
+                is_shorter = state not in found or end < len(found[state])
+                if kind == recognizer.line_kind and is_shorter:
+                    found[state] = kinds[:end]
+    return found
 
 
 class FailureFinder:
@@ -135,8 +138,8 @@ class FailureFinder:
         self._resumed: dict[tuple[object, ...], Spot] = {}
 
     @cached_property
-    def _anchors(self) -> LineStates:
-        return LineStates(self.recognizer)
+    def _anchors(self) -> Sequence[State]:
+        return list(line_states(self.recognizer))
 
     def find(self, text: str) -> list[Failure]:
         """Return the failures of a text in order; empty if the text is a program."""
@@ -218,11 +221,11 @@ class FailureFinder:
         return found
 
     def _anchor(self, line: int) -> Spot | None:
-        """Return the spot after this line in the first `LineStates` state that can read it."""
+        """Return the spot after this line in the first of the `line_states` that can read it."""
         try:
             return self._elsewhere[line]
         except KeyError:
-            spots = map(self._reader.spot, self._anchors.states)
+            spots = map(self._reader.spot, self._anchors)
             reached = (self._reader.after(spot, line) for spot in spots)
             found = next((spot for spot in reached if spot is not None), None)
             self._elsewhere[line] = found
@@ -243,7 +246,7 @@ class FailureFinder:
         if (len(known) == 1 and not lost) or self._readable(known[0], lines[:1]):
             return known[0]
         if lost:
-            known += map(self._reader.spot, self._anchors.states)
+            known += map(self._reader.spot, self._anchors)
         return max(known, key=lambda spot: self._readable(spot, lines))
 
     def _readable(self, spot: Spot, lines: list[int]) -> int:

@@ -8,14 +8,13 @@ the whole construct.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from grammar.parser.failures import FailureFinder
+from grammar.parser.failures import FailureFinder, line_states
 from grammar.parser.lexer import EOF
 from grammar.parser.recognizer import Recognizer, State
-from grammar.parser.sentences import Sentences
 from grammar.parser.shortest_paths import Paths
 from recovery.proposals.edit_site import LinePattern
 from recovery.reproducer.ddmin import minimized, without_loops, without_stretches
@@ -182,29 +181,16 @@ class Reducer:
                 return _FailurePoint(index, state, gap, end)
         return _FailurePoint(index, state, 0, start)
 
-    def _prefixes(self, line: LinePattern) -> Iterator[list[int]]:
+    def _prefixes(self, line: LinePattern) -> Iterator[Sequence[int]]:
         """Yield tokens to places where a line can begin, and to where this one began."""
         yield from self._places.values()
         for frames in line.form.before[:MOST_CONFIGURATIONS]:
             yield self._paths.prefix(frames)
 
     @cached_property
-    def _places(self) -> dict[State, list[int]]:
+    def _places(self) -> Mapping[State, Sequence[int]]:
         """The shortest tokens to each place where a line can begin, the shortest first."""
-        recognizer, sentences = self.recognizer, Sentences(self.recognizer.grammar)
-        kind_of, line_kind = recognizer.lexer.kind_of, recognizer.line_kind
-        found: dict[State, list[int]] = {recognizer.start: []}
-        for rule in sentences.reachable:
-            for sentence in sentences.through(rule):
-                kinds = [kind_of[name] for name in sentence]
-                here = recognizer.start
-                for end, kind in enumerate(kinds, 1):
-                    state = recognizer.step(here, kind)
-                    if state is None:  # a rule that only fits with more around it
-                        break
-                    here = state
-                    if kind == line_kind and end < len(found.get(here, sentence)):
-                        found[here] = kinds[:end]
+        found = {**line_states(self.recognizer), self.recognizer.start: ()}
         return dict(sorted(found.items(), key=lambda item: (len(item[1]), item[1])))
 
     def _endings(self, start: State, line: list[AbstractToken]) -> list[list[AbstractToken]]:
