@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.keywords import Vocabulary
-from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.proposals.blocks import BlockLines, SourceFile, find_blocks
 from recovery.tuning import BALANCED_FILES
 
 
 def blocks_of(
-    corpus: CorpusLines,
     keywords: InferredKeywords,
     recognizer: Recognizer,
     prefixes: frozenset[str],
 ) -> list[BlockLines]:
     """Return the blocks of a corpus that the grammar of the recogniser lacks."""
-    lexer = recognizer.lexer
+    lexer, corpus = recognizer.lexer, keywords.corpus
     name = lexer.name_kind
     tokens = []
     leads = []

@@ -12,8 +12,8 @@ from grammar.parser.failures import Failure
 from grammar.parser.recognizer import Recognizer, State
 from recovery.brackets import BRACKETS, CLOSING
 from recovery.induction.inferred_keywords import InferredKeywords
-from recovery.induction.steps import Evidence
 from recovery.language import CorpusFile
+from recovery.ledger.construct import Evidence
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import LINES_OF_ONE_FILE, PLACES_IN_ONE_FILE, PLACES_REMEMBERED, PLACES_SHOWN
 
@@ -79,7 +79,7 @@ class FailingLines:
         origins = {origin for line in some for origin in line.origins}
         seen = dict.fromkeys(place for line in some for place in line.seen)
         shown = tuple(islice(seen, PLACES_SHOWN))
-        return Evidence(len(files), len(origins), self.weight(lines), shown)
+        return Evidence(len(files), len(origins), self.weight(lines), seen=shown)
 
     def is_repeated(
         self,

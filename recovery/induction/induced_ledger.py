@@ -7,7 +7,7 @@ so the same commands read, show and replay it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from random import Random
 from typing import Any
 
@@ -15,8 +15,8 @@ from grammar.notation.edits import AddAlternative, AddToken, Edit, apply
 from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.rebase import rebased
 from grammar.notation.wellformed import problem
-from recovery.induction.steps import AcceptedStep, Reading, RefusedStep, Round, described
-from recovery.ledger.construct import Construct, Evidence, LedgerError
+from recovery.induction.steps import AcceptedStep, RefusedStep, Round, described
+from recovery.ledger.construct import Construct, LedgerError
 from recovery.ledger.construct_file import name_from
 from recovery.ledger.ledger import in_force
 
@@ -39,8 +39,8 @@ class InducedLedger:
         added = [self._construct(step) for step in done.taken]
         self.rounds.append(
             {
-                "shown": _reading(done.shown),
-                "held": _reading(done.held),
+                "shown": asdict(done.shown),
+                "held": asdict(done.held),
                 "rules": sum(not rule.is_lexer for rule in before.rules),
                 "taken": [
                     {
@@ -65,9 +65,6 @@ class InducedLedger:
             if not (isinstance(edit, AddToken | AddAlternative) and _is_there(self.grammar, edit)):
                 self.grammar = apply(self.grammar, [edit])
                 edits.append(edit)
-        evidence = Evidence(
-            step.evidence.files, step.evidence.origins, step.evidence.lines, seen=step.evidence.seen
-        )
         construct = Construct(
             name_from(step.title),
             step.title,
@@ -76,7 +73,7 @@ class InducedLedger:
             summary="Inferred from the lines that fail without it."
             if step.evidence.lines
             else "Says more with less: no line needs it.",
-            evidence=evidence,
+            evidence=step.evidence,
         )
         construct = replace(construct, state=construct.earned_state)
         self.constructs.append(construct)
@@ -145,10 +142,6 @@ def _is_there(grammar: Grammar, edit: AddToken | AddAlternative) -> bool:
         return edit.name in grammar.by_name
     rule = grammar.by_name[edit.rule]
     return edit.text in {rule.source_of(alternative) for alternative in rule.alternatives}
-
-
-def _reading(reading: Reading) -> dict[str, int]:
-    return {"parsed": reading.parsed, "files": reading.files, "failing": reading.failing}
 
 
 def _short(grammar: Grammar, edits: Iterable[Edit]) -> list[str]:

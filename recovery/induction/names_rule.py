@@ -9,7 +9,7 @@ from grammar.notation.addresses import sequences
 from grammar.notation.edits import AddAlternative, AddRule, AddToken, Edit, Replace
 from grammar.notation.model import Element, Grammar, Group, Reference, Repeat
 from grammar.parser.lexer import Lexer
-from recovery.induction.steps import AcceptedStep, Evidence
+from recovery.induction.steps import AcceptedStep
 
 #: The rules that are made where the token of names, or a choice of it and values, has none.
 NAMES = "name"
@@ -80,4 +80,4 @@ def _with_rule(
     text = "\n    | ".join(tokens)
     added = AddRule(rules[-1].name, f"{name}\n    : {text}\n    ;")
     title = f"{name}s are a rule of their own"
-    return AcceptedStep(title, (added, *edits), Evidence(0, 0, 0, ()))
+    return AcceptedStep(title, (added, *edits))

@@ -38,8 +38,9 @@ from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
 from recovery.induction.folding import folds_of, size
 from recovery.induction.grammar_view import GrammarView
-from recovery.induction.inference import Inference
+from recovery.induction.inference import inner_edits, outer_edits
 from recovery.induction.inferred_keywords import InferredKeywords, names_read
+from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names, with_operands
@@ -47,7 +48,6 @@ from recovery.induction.objections import EditReview
 from recovery.induction.shown_files import Failures, ShownFiles, reading
 from recovery.induction.steps import (
     AcceptedStep,
-    Evidence,
     InferredStep,
     Reading,
     RefusedStep,
@@ -55,8 +55,10 @@ from recovery.induction.steps import (
     described,
     joined,
 )
+from recovery.induction.supported_forms import SupportedForms
 from recovery.induction.unknown_tokens import unknown_tokens
 from recovery.language import CorpusFile, Language
+from recovery.ledger.construct import Evidence
 from recovery.negatives.negatives import NegativeSet
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.failing_line import source_lines
@@ -184,18 +186,19 @@ class Induction:
         known = table.occurrences
         contexts = [finder.context(line.state) for line in known if line.state is not None]
         self._names = OperandRules(recognizer).names
-        prefixes = keywords.prefixes()
-        blocks = [] if inner else blocks_of(keywords.corpus, keywords, recognizer, prefixes)
-        having = [line.origins for line in known]
-        inner_words = keywords.corpus.inner_words
-        inference = Inference(
-            recognizer, table.patterns, contexts, having, blocks, prefixes, inner_words, least[0]
-        )
+        at = LineSymbols(recognizer, table.patterns, contexts)
+        forms = SupportedForms(at, [line.origins for line in known], least[0])
+        if inner:
+            found_edits = inner_edits(at, forms)
+        else:
+            prefixes = keywords.prefixes()
+            blocks = blocks_of(keywords, recognizer, prefixes)
+            found_edits = outer_edits(at, forms, blocks, prefixes, keywords.corpus.inner_words)
         trial = EditTrial(recognizer, table.patterns)
         # a rule of that name may be something else
         names = self._names or (None if NAMES in self.grammar.by_name else NAMES)
         scored: list[_Scored] = []
-        for written in inference.inner() if inner else inference.outer():
+        for written in found_edits:
             edits = softened(written.edits, keywords.soft, names)
             found = replace(written, edits=edits)
             if not self._names and any(getattr(e, "rule", "") == names for e in edits):
@@ -208,10 +211,10 @@ class Induction:
             else:
                 gain, mended = _line_gain(trial, found, table)
             if gain:
-                callers = inference.profile.callers
+                callers = at.profile.callers
                 rules = [r for r in changed_rules(edits) if r in callers]
                 breadth = found.breadth + sum(map(_size, edits))
-                breadth += sum(map(inference.profile.width, rules))
+                breadth += sum(map(at.profile.width, rules))
                 scored.append((gain * SYMBOL_FACTOR**breadth, found, mended))
         scored.sort(key=lambda s: (-s[0], str(s[1].edits)))
         grown = [lines for _, found, lines in scored if not _adds_form(found.edits)]
@@ -347,7 +350,7 @@ class Induction:
             if isinstance(narrower, str):
                 refused[fold.title] = RefusedStep(fold.title, fold.edits, 0.0, narrower)
                 continue
-            taken.append(AcceptedStep(fold.title, fold.edits, Evidence(0, 0, 0, ())))
+            taken.append(AcceptedStep(fold.title, fold.edits))
             had.add(narrower.grammar.sha256)
             review = replace(review, recognizer=narrower)
             found = folds_of(GrammarView(narrower, operands))
@@ -362,7 +365,7 @@ class Induction:
             read = zip(files, failures, strict=True)
             texts = (file.text for file, wrong in read if not wrong)
             bounds = [
-                AcceptedStep(bounded.title, bounded.edits, Evidence(0, 0, 0, ()))
+                AcceptedStep(bounded.title, bounded.edits)
                 for bounded in bounded_lists(recognizer, self._start, texts)
                 if bounded.edits not in self.struck
             ]
@@ -436,7 +439,7 @@ class Induction:
         origins = frozenset[str]().union(*(self.shown.files[place].origins for place in places))
         if len(origins) < least[0] or len(places) < least[1] or edits in self.struck:
             return None
-        evidence = Evidence(len(places), len(origins), len(seen), seen[:PLACES_SHOWN])
+        evidence = Evidence(len(places), len(origins), len(seen), seen=seen[:PLACES_SHOWN])
         kept, _ = self.shown.kept(self.grammar, [AcceptedStep(title, edits, evidence)], None)
         if not kept:
             return None

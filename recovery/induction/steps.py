@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, describe, to_data
 from grammar.notation.model import Grammar, GrammarError
+from recovery.ledger.construct import Evidence
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,22 +28,12 @@ class InferredStep:
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
-    """The evidence for edits: files and origins with lines that they repair, and some places."""
-
-    files: int
-    origins: int
-    lines: int
-    seen: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class AcceptedStep:
     """A step of the growth: edits, reason and evidence."""
 
     title: str
     edits: tuple[Edit, ...]
-    evidence: Evidence
+    evidence: Evidence = field(default_factory=Evidence)
 
 
 @dataclass(frozen=True, slots=True)

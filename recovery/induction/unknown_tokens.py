@@ -7,8 +7,9 @@ import unicodedata
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain, count, pairwise, takewhile
+from itertools import chain, count, pairwise
 from math import comb
+from os.path import commonprefix
 from statistics import mean
 
 from grammar.parser.lexer import ERROR, Lexer
@@ -141,7 +142,7 @@ def _content(texts: Sequence[str], quote: str) -> str:
     chance are left out: a binary number has no 2.
     """
     several = set(texts)
-    begun = _common_start(several) if len(several) >= ALIKE_TEXTS else ""
+    begun = commonprefix([*several]) if len(several) >= ALIKE_TEXTS else ""  # noqa: RUF071 - texts
     rest = [text.removeprefix(begun) for text in texts]
     characters = "".join(rest)
     signs = sorted({c for c in characters if not (c.isascii() and c.isalnum())})
@@ -171,12 +172,6 @@ def _beginning(text: str) -> str:
     """Return with what a text begins: "letter", "digit" or "other"."""
     first = text[:1] if text.isascii() else ""
     return "letter" if first.isalpha() else "digit" if first.isdigit() else "other"
-
-
-def _common_start(texts: Collection[str]) -> str:
-    """Return the longest text with which all texts begin."""
-    both = zip(min(texts), max(texts), strict=False)
-    return "".join(one for one, other in takewhile(lambda pair: pair[0] == pair[1], both))
 
 
 def _escaped(text: str, special: str) -> str:

@@ -31,7 +31,7 @@ from recovery.induction.induced_ledger import InducedLedger, without
 from recovery.induction.names_rule import with_names
 from recovery.induction.objections import EditReview
 from recovery.induction.rounds import Induction
-from recovery.induction.steps import AcceptedStep, Evidence, InferredStep, RefusedStep, described
+from recovery.induction.steps import AcceptedStep, InferredStep, RefusedStep, described
 from recovery.language import CorpusFile
 from recovery.ledger.ledger import in_force
 from recovery.negatives.negatives import Negative, NegativeSet
@@ -498,7 +498,7 @@ def test_folds_that_undo_each_other_end(toy: Grammar, monkeypatch: pytest.Monkey
     ) -> tuple[list[AcceptedStep], list[RefusedStep]]:
         there = len(self.grammar.by_name["halt"].alternatives)
         edit = RemoveAlternative("halt", 2) if there > 1 else AddAlternative("halt", "NAME")
-        return [AcceptedStep("back and forth", (edit,), Evidence(0, 0, 0, ()))], []
+        return [AcceptedStep("back and forth", (edit,))], []
 
     monkeypatch.setattr(Induction, "_folded", folded)
     files = (CorpusFile("a.toy", "HALT\n", frozenset({"a"})),)

@@ -9,17 +9,17 @@ from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
 from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.induction.shown_files import ShownFiles
-from recovery.induction.steps import AcceptedStep, Evidence
+from recovery.induction.steps import AcceptedStep
 from recovery.language import CorpusFile
+from recovery.ledger.construct import Evidence
 
 
 def test_a_step_that_needs_one_not_taken(toy: Grammar, toy_files: tuple[CorpusFile, ...]) -> None:
     """It goes too, with the reason."""
-    evidence = Evidence(0, 0, 0, ())
     shrunk = AcceptedStep(
-        "a", (AddRule("halt", "word : HALT ;"), Replace("halt", (1, 1), "NUMBER")), evidence
+        "a", (AddRule("halt", "word : HALT ;"), Replace("halt", (1, 1), "NUMBER"))
     )
-    resting = AcceptedStep("b", (Replace("factor", (1, 1), "word"),), evidence)
+    resting = AcceptedStep("b", (Replace("factor", (1, 1), "word"),))
     halting = (*toy_files, CorpusFile("four/a.toy", "HALT\n", frozenset({"four"})))
     taken, lost = ShownFiles(halting).kept(toy, [shrunk, resting], None)
     assert ([], ["a", "b"]) == (taken, [step.title for step in lost])
@@ -31,7 +31,7 @@ def test_one_file_that_uses_a_word_as_a_name(toy: Grammar, form: str, kept: int)
     files = tuple(CorpusFile(f"a/{n}", f"{form}\n", frozenset("a")) for n in range(3))
     named = CorpusFile("b", "GO := 1\n", frozenset("b"))
     edits = (AddToken("GO"), AddAlternative("simpleStatement", form))
-    step = AcceptedStep("go", edits, Evidence(3, 1, 3, ()))
+    step = AcceptedStep("go", edits, Evidence(3, 1, 3))
     taken, _ = ShownFiles((*files, named)).kept(toy, [step], None)
     assert kept == len(taken)
 
