@@ -245,7 +245,7 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     motions = ("motion", "blending", "program", *arm, "--html", str(folder / "conform-arm"))
     yield _Step("conform-arm", ("conform", *motions), 0.15, "conform-arm/index.html", arm)
     yield _Step("conform-laws", ("conform", "--metamorphic", "10"), 0.1)
-    within = ("--minutes", f"{0.3 * minutes:g}")  # a slow machine runs fewer
+    within = ("--minutes", f"{0.25 * minutes:g}")  # a slow machine runs fewer
     yield _Step("fuzz", ("fuzz", "--programs", programs, *within, "--seed", seed), 0.35)
     yield _Step(
         "recover", ("recover", *given, "--out", str(folder / "recover")), 0.3, "recover/index.html"
@@ -255,6 +255,8 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     )
     for bench in ("recover", "check", "scale", "vm", "arm", "conform"):
         arguments = ("bench", bench, *(given if bench in ("recover", "check", "scale") else ()))
+        if bench == "scale":
+            arguments += ("--sizes", "5,10,20")
         if bench == "conform":
             arguments += ("--mutants", str(max(10, round(2 * minutes))), "--seed", seed)
         yield _Step(f"bench-{bench}", arguments, 0.15)
