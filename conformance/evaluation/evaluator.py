@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
-from typing import Final, Literal
+from typing import Literal
 
 from conformance.evaluation.duration_laws import duration_violations
 from conformance.evaluation.motion_laws import blend_speed_violations, motion_violations
@@ -27,6 +27,7 @@ from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, 
 from conformance.suite.case import Case
 from conformance.suite.expectations import KINDS, Expectation, expected_ending
 from conformance.suite.registry import basis
+from grammar.semantics.predefined import System
 
 State = Literal["met", "unmet", "open"]
 
@@ -157,10 +158,6 @@ def _check_finding(one: Expectation, seen: Observation) -> Check:
     return _check(one, "met" if is_met else "unmet", actual)
 
 
-#: Messages that say the same as another, which is the one that we report [S4].
-_TWINS: Final = {"KSS2275": "KSS2274", "KSS2923": "KSS2359"}
-
-
 def _check_recorded_finding(one: Expectation, seen: Observation) -> Check:
     """Check an expectation about findings against a recording of a real controller.
 
@@ -180,9 +177,16 @@ def _check_recorded_finding(one: Expectation, seen: Observation) -> Check:
     is_late = Finding.may_come_late(code) or code.startswith("KRL5")
     if not there and (one.kind == "warning" or is_late):
         return _check(one, "open", "a controller may report it when the program runs")
-    codes = {_TWINS.get(found.code, found.code) for found in there}
+    codes = {_reported(found.code) for found in there}
     is_met = code in codes if code.startswith("KSS") and any(codes) else bool(there)
     return _check(one, "met" if is_met else "unmet", actual)
+
+
+def _reported(code: str) -> str:
+    """Return the code that we report for a message of a controller."""
+    number = code.removeprefix("KSS")
+    message = System.load().message(int(number)) if number.isdigit() else None
+    return f"KSS{message.same_as}" if message is not None and message.same_as else code
 
 
 def _listed(findings: list[Finding] | tuple[Finding, ...]) -> str:

@@ -113,12 +113,14 @@ class Message:
     """A message of the controller, in our words.
 
     ``phase`` is "check" if it is issued before a program runs, otherwise "run". ``kind`` is its
-    class (state, acknowledgement, notification), empty if that is unknown.
+    class (state, acknowledgement, notification), empty if that is unknown. ``same_as`` is the
+    number of the message that says the same and that we report instead of this one.
     """
 
     number: int
     phase: Literal["check", "run"]
     kind: str
+    same_as: int | None
     text: str
     source: tuple[str, ...]
 
@@ -319,6 +321,7 @@ def _message(row: _Row) -> Message:
         number=int(row["number"]),
         phase="check" if row["phase"] == "check" else "run",
         kind=row["class"],
+        same_as=int(row["same_as"]) if row["same_as"] else None,
         text=row["text"],
         source=tuple(row["source"].split()),
     )

@@ -57,6 +57,19 @@ def test_every_entry_can_be_made(release: str | None) -> None:
     assert all(message == system.message(message.number) for message in system.messages)
 
 
+def test_messages_that_say_the_same_are_those_that_we_do_not_report(system: System) -> None:
+    """The other one is a message of the same phase with the same text, and has no such other."""
+    codes = {entry.code for entry in by_slug().values()}
+    pairs = [(one, one.same_as) for one in system.messages if one.same_as is not None]
+    assert 2 == len(pairs)
+    for one, number in pairs:
+        other = system.message(number)
+        assert other is not None
+        assert (one.phase, one.text) == (other.phase, other.text)
+        assert other.same_as is None
+        assert {f"KSS{number}"} == codes & {f"KSS{number}", f"KSS{one.number}"}
+
+
 @pytest.mark.parametrize(
     "table",
     [
