@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from grammar.semantics.types import Array
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import array_sizes, size
 from interp.bytecode.program import Parameter
-from interp.bytecode.vm.context import Rule, Rules, Site
+from interp.bytecode.vm.context import DATA_LISTS, Frame, Rule, Rules, Site
 from interp.bytecode.vm.data_movement import load
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import fault
@@ -22,11 +23,11 @@ class ArrayRules(Rules):
         """Return the factory of each opcode."""
         return {
             Op.INDEX: self._index,
-            Op.INDEX_LOCAL: self._index_local,
-            Op.INDEX_DATA: self._index_data,
+            Op.INDEX_LOCAL: partial(self._index_in, self._state),
+            Op.INDEX_DATA: partial(self._index_in, DATA_LISTS),
             Op.INDEX_VIEW: self._index_view,
-            Op.ELEMENT_LOCAL: self._element_local,
-            Op.ELEMENT_DATA: self._element_data,
+            Op.ELEMENT_LOCAL: partial(self._element_in, self._state),
+            Op.ELEMENT_DATA: partial(self._element_in, DATA_LISTS),
             Op.PUSH_NO_VIEW: self._push_no_view,
             Op.VIEW: self._view,
             Op.LOAD_VIEW: self._load_view,
@@ -49,34 +50,13 @@ class ArrayRules(Rules):
 
         return operation
 
-    def _index_local(self, site: Site, place: int, number: int) -> Operation:
-        sizes, width = self._array(number)
-        state, stack, after = self._state, self._stack, site.after
-        if len(sizes) > 1:
-
-            def general() -> Operation:
-                stack.append(_flat(stack, sizes) * width + state.fp + place)
-                return after
-
-            return general
-        length = sizes[0]
-
-        def operation() -> Operation:
-            index = stack[-1]
-            if not 1 <= index <= length:
-                raise fault("index")
-            stack[-1] = state.fp + place + (index - 1) * width
-            return after
-
-        return operation
-
-    def _index_data(self, site: Site, place: int, number: int) -> Operation:
+    def _index_in(self, frame: Frame, site: Site, place: int, number: int) -> Operation:
         sizes, width = self._array(number)
         stack, after = self._stack, site.after
         if len(sizes) > 1:
 
             def general() -> Operation:
-                stack.append(_flat(stack, sizes) * width + place)
+                stack.append(_flat(stack, sizes) * width + frame.fp + place)
                 return after
 
             return general
@@ -86,34 +66,15 @@ class ArrayRules(Rules):
             index = stack[-1]
             if not 1 <= index <= length:
                 raise fault("index")
-            stack[-1] = before + index * width
+            stack[-1] = frame.fp + before + index * width
             return after
 
         return operation
 
-    def _element_local(self, site: Site, place: int, number: int) -> Operation:
+    def _element_in(self, frame: Frame, site: Site, place: int, number: int) -> Operation:
         sizes, _ = self._array(number)
         if len(sizes) > 1:
-            return self._index_local(self._before(site, load(self._state, site)), place, number)
-        state, cells, stack, after = self._state, self._cells, self._stack, site.after
-        length, before = sizes[0], place - 1
-
-        def operation() -> Operation:
-            index = stack[-1]
-            if not 1 <= index <= length:
-                raise fault("index")
-            raw = cells[state.fp + before + index]
-            if raw is None:
-                raise fault("uninitialised")
-            stack[-1] = raw
-            return after
-
-        return operation
-
-    def _element_data(self, site: Site, place: int, number: int) -> Operation:
-        sizes, _ = self._array(number)
-        if len(sizes) > 1:
-            return self._index_data(self._before(site, load(self._state, site)), place, number)
+            return self._index_in(frame, self._before(site, load(self._state, site)), place, number)
         cells, stack, after = self._cells, self._stack, site.after
         length, before = sizes[0], place - 1
 
@@ -121,7 +82,7 @@ class ArrayRules(Rules):
             index = stack[-1]
             if not 1 <= index <= length:
                 raise fault("index")
-            raw = cells[before + index]
+            raw = cells[frame.fp + before + index]
             if raw is None:
                 raise fault("uninitialised")
             stack[-1] = raw

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from interp.bytecode.program import Instruction, Program
 from interp.bytecode.vm.state import OperandStack, Operation, State
@@ -49,6 +49,21 @@ class Hooks(Protocol):
 
     def tell_leave(self) -> None:
         """Trace the end of the current routine."""
+
+
+class Frame(Protocol):
+    """A range of cells, which begins at ``fp``."""
+
+    fp: int
+
+
+class _DataLists:
+    """The data lists as a frame: they come first."""
+
+    fp = 0
+
+
+DATA_LISTS: Final = _DataLists()
 
 
 class Site:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain, size
 from interp.bytecode.program import CodeKind, Mode, Parameter, stack_cells
-from interp.bytecode.vm.context import Rule, Rules, Site
+from interp.bytecode.vm.context import DATA_LISTS, Frame, Rule, Rules, Site
 from interp.bytecode.vm.state import Operation
 from interp.values.faults import FAULTS, LinkError, fault
 
@@ -35,8 +36,8 @@ class ControlRules(Rules):
             Op.FAIL: _fail,
             Op.UNLINKED: self._unlinked,
             Op.AT: lambda site, _line, _to: hooks.other_line(site.place, site.after),
-            Op.FOR_LOCAL: self._for_local,
-            Op.FOR_DATA: self._for_data,
+            Op.FOR_LOCAL: partial(self._for, self._state),
+            Op.FOR_DATA: partial(self._for, DATA_LISTS),
         }
 
     def _jump_if(self, site: Site, target: int) -> Operation:
@@ -146,35 +147,22 @@ class ControlRules(Rules):
 
         return operation
 
-    def _for_local(self, site: Site, counter: int, limit: int, step: int, target: int) -> Operation:
+    def _for(
+        self, frame: Frame, site: Site, counter: int, limit: int, step: int, target: int
+    ) -> Operation:
+        """Return the operation of a loop whose counter is in ``frame``; its limit is local."""
         state, cells, after, body = self._state, self._cells, site.after, site.body
         goes_on = operator.le if step > 0 else operator.ge
 
         def operation() -> Operation:
-            fp = state.fp
-            value, last = cells[fp + counter], cells[fp + limit]
+            place = frame.fp + counter
+            value, last = cells[place], cells[state.fp + limit]
             if value is None or last is None:
                 raise fault("uninitialised")
             value += step
             if not -0x80000000 <= value <= 0x7FFFFFFF:
                 raise fault("overflow")
-            cells[fp + counter] = value
-            return body[target] if goes_on(value, last) else after
-
-        return operation
-
-    def _for_data(self, site: Site, counter: int, limit: int, step: int, target: int) -> Operation:
-        state, cells, after, body = self._state, self._cells, site.after, site.body
-        goes_on = operator.le if step > 0 else operator.ge
-
-        def operation() -> Operation:
-            value, last = cells[counter], cells[state.fp + limit]
-            if value is None or last is None:
-                raise fault("uninitialised")
-            value += step
-            if not -0x80000000 <= value <= 0x7FFFFFFF:
-                raise fault("overflow")
-            cells[counter] = value
+            cells[place] = value
             return body[target] if goes_on(value, last) else after
 
         return operation
