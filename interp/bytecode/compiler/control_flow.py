@@ -17,7 +17,7 @@ from interp.bytecode.compiler.code_writer import Label
 from interp.bytecode.compiler.emitter import Ended
 from interp.bytecode.compiler.expressions import CodeMaker, Expressions
 from interp.bytecode.compiler.locations import (
-    DataCells,
+    FixedCells,
     FrameCells,
     Location,
     ReferenceParameter,
@@ -195,7 +195,7 @@ class ControlFlow(CodeMaker):
         """Generate FOR [CTL-05, CTL-06]."""
         step = self._step(node.step)
         counter = self._designators.variable(node.counter)
-        if step is None or not isinstance(counter, FrameCells | DataCells) or counter.type != INT:
+        if step is None or not isinstance(counter, FixedCells) or counter.type != INT:
             self._general_for(node, counter, step, end)
             return
         self._store_integer(counter, node.first)
@@ -210,10 +210,7 @@ class ControlFlow(CodeMaker):
         self._writer.place(body)
         self._pass(node.body, end)
         self.begin(node, end)
-        if isinstance(counter, FrameCells):
-            self._emit(Op.FOR_LOCAL, counter.offset, last.offset, step, again)
-        else:
-            self._emit(Op.FOR_DATA, counter.address, last.offset, step, again)
+        self._emit(counter.count, counter.offset, last.offset, step, again)
         self._memory.tell(counter)
 
     def _step(self, node: ast.Expression | None) -> int | None:

@@ -109,7 +109,7 @@ class _DataList:
                 if is_first and self._writer.here == start and isinstance(place, DataCells):
                     with suppress(Fault, LinkError):  # the code for it reports this
                         found = self._cells_of(value, place.type)
-                        self._cells.update(enumerate(found, place.address))
+                        self._cells.update(enumerate(found, place.offset))
                         return False
                 self._expressions.assign(place, value)
                 if {Op.ASK, Op.CALL} & self._writer.ops(start):

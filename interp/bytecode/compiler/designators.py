@@ -20,7 +20,7 @@ from interp.bytecode.compiler.emitter import Emitter
 from interp.bytecode.compiler.loads_and_stores import Memory
 from interp.bytecode.compiler.locations import (
     DataCells,
-    FrameCells,
+    FixedCells,
     IndexCell,
     Location,
     Pushed,
@@ -152,7 +152,7 @@ class Designators:
             raise self._emitter.unlinked("an index of what is no array")
         sizes = base.type.sizes
         fixed = [number for node in given if (number := literal(node)) is not None]
-        if isinstance(base, FrameCells | DataCells) and len(fixed) == len(given) <= len(sizes):
+        if isinstance(base, FixedCells) and len(fixed) == len(given) <= len(sizes):
             found = self._memory.fixed_element(base, tuple(fixed))
             if found is not None:
                 return found
@@ -170,23 +170,19 @@ class Designators:
 
     def _indexed(
         self,
-        base: FrameCells | DataCells | ReferenceParameter | Pushed,
+        base: FixedCells | ReferenceParameter | Pushed,
         type_: Array,
         nodes: list[ast.Expression],
         through: int | None,
     ) -> Pushed:
         number = self._emitter.number(type_)
-        match base:
-            case FrameCells(offset):
-                self._indices(nodes)
-                self._emit(Op.INDEX_LOCAL, offset, number)
-            case DataCells(address):
-                self._indices(nodes)
-                self._emit(Op.INDEX_DATA, address, number)
-            case _:
-                self._memory.refer(base)
-                self._indices(nodes)
-                self._emit(Op.INDEX, number)
+        if isinstance(base, FixedCells):
+            self._indices(nodes)
+            self._emit(base.index, base.offset, number)
+        else:
+            self._memory.refer(base)
+            self._indices(nodes)
+            self._emit(Op.INDEX, number)
         return Pushed(type_.element, through)
 
     def _view_element(

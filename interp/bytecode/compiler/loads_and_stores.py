@@ -10,7 +10,7 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain, bits_of, elements, offset_of, shared_cells
 from interp.bytecode.compiler.emitter import Emitter
 from interp.bytecode.compiler.locations import (
-    DataCells,
+    FixedCells,
     FrameCells,
     IndexCell,
     Location,
@@ -62,12 +62,10 @@ class Memory:
         self.refer(place)
         return Reference(place.type)
 
-    def _load_cell(self, place: FrameCells | DataCells | ReferenceParameter | Pushed) -> None:
+    def _load_cell(self, place: FixedCells | ReferenceParameter | Pushed) -> None:
         match place:
-            case FrameCells(offset):
-                self._emit(Op.LOAD_LOCAL, offset)
-            case DataCells(address):
-                self._emit(Op.LOAD_DATA, address)
+            case FixedCells(offset):
+                self._emit(place.load, offset)
             case ReferenceParameter(offset):
                 self._emit(Op.LOAD_REF, offset)
                 self._emit(Op.LOAD)
@@ -79,13 +77,11 @@ class Memory:
                 else:
                     last.op = element
 
-    def refer(self, place: FrameCells | DataCells | ReferenceParameter | Pushed) -> None:
+    def refer(self, place: FixedCells | ReferenceParameter | Pushed) -> None:
         """Push a reference to a location."""
         match place:
-            case FrameCells(offset, type_):
-                self._emit(Op.REF_LOCAL, offset, self._emitter.number(type_))
-            case DataCells(address, type_):
-                self._emit(Op.REF_DATA, address, self._emitter.number(type_))
+            case FixedCells(offset, type_):
+                self._emit(place.refer, offset, self._emitter.number(type_))
             case ReferenceParameter(offset):
                 self._emit(Op.LOAD_REF, offset)
 
@@ -161,13 +157,10 @@ class Memory:
         return self._part(base, *found)
 
     def _part(
-        self, base: FrameCells | DataCells | ReferenceParameter | Pushed, offset: int, type_: Type
+        self, base: FixedCells | ReferenceParameter | Pushed, offset: int, type_: Type
     ) -> Location:
-        match base:
-            case FrameCells(first):
-                return FrameCells(first + offset, type_)
-            case DataCells(first):
-                return DataCells(first + offset, type_)
+        if isinstance(base, FixedCells):
+            return type(base)(base.offset + offset, type_)
         through = base.offset if isinstance(base, ReferenceParameter) else base.through
         self.refer(base)
         last = self._writer.last()
@@ -179,16 +172,10 @@ class Memory:
             self._emit(Op.MEMBER, offset, self._emitter.number(type_))
         return Pushed(type_, through)
 
-    def fixed_element(
-        self, base: FrameCells | DataCells, indices: tuple[int, ...]
-    ) -> FrameCells | DataCells | None:
+    def fixed_element(self, base: FixedCells, indices: tuple[int, ...]) -> FixedCells | None:
         """Return the location of an element or row with constant indices; ``None`` if outside."""
         found = offset_of(base.type, indices)
-        if found is None:
-            return None
-        if isinstance(base, FrameCells):
-            return FrameCells(base.offset + found[0], found[1])
-        return DataCells(base.address + found[0], found[1])
+        return None if found is None else type(base)(base.offset + found[0], found[1])
 
     # ----------------------------------------------------------------------- conversion
 
@@ -224,7 +211,7 @@ class Memory:
             case ViewParameter():
                 self.view(place)
                 return PushedView(place.element, place.dimensions, place.offset, place.most)
-            case FrameCells() | DataCells() if not isinstance(place.type, Plain):
+            case FixedCells() if not isinstance(place.type, Plain):
                 self.refer(place)
         return place
 
@@ -242,13 +229,10 @@ class Memory:
         assert not isinstance(place, ViewParameter), "made ready"
         if isinstance(place.type, Plain):
             self.convert(value, place.type)
-            match place:
-                case FrameCells(offset):
-                    self._emit(Op.STORE_LOCAL, offset)
-                case DataCells(address):
-                    self._emit(Op.STORE_DATA, address)
-                case _:
-                    self._emit(Op.STORE)
+            if isinstance(place, FixedCells):
+                self._emit(place.store, place.offset)
+            else:
+                self._emit(Op.STORE)
             return
         self.store_block(place.type, value, behind)
 
@@ -337,10 +321,8 @@ class Memory:
     def tell(self, place: Location) -> None:
         """Generate the trace event of an assignment to a location."""
         match place:
-            case FrameCells(offset, type_):
-                self._emit(Op.TELL_LOCAL, offset, self._emitter.number(type_))
-            case DataCells(address, type_):
-                self._emit(Op.TELL_DATA, address, self._emitter.number(type_))
+            case FixedCells(offset, type_):
+                self._emit(place.tell, offset, self._emitter.number(type_))
             case Pushed(type_, through):
                 self._tell_last(type_, 0, through)
             case PushedView(element, dimensions, through):

@@ -2,25 +2,43 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from grammar.semantics.types import Type
+from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.compiler.buffer_sizes import Bound
 from support.lazy_dataclass import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class FrameCells:
-    """Cells in the frame."""
+class FixedCells:
+    """Cells at a place that is known; the subclasses have the instructions for them."""
 
     offset: int
     type: Type
 
+    load: ClassVar[Op]
+    store: ClassVar[Op]
+    refer: ClassVar[Op]
+    index: ClassVar[Op]
+    count: ClassVar[Op]
+    tell: ClassVar[Op]
 
-@dataclass(frozen=True, slots=True)
-class DataCells:
+
+class FrameCells(FixedCells):
+    """Cells in the frame."""
+
+    __slots__ = ()
+    load, store, refer = Op.LOAD_LOCAL, Op.STORE_LOCAL, Op.REF_LOCAL
+    index, count, tell = Op.INDEX_LOCAL, Op.FOR_LOCAL, Op.TELL_LOCAL
+
+
+class DataCells(FixedCells):
     """Cells in the data lists."""
 
-    address: int
-    type: Type
+    __slots__ = ()
+    load, store, refer = Op.LOAD_DATA, Op.STORE_DATA, Op.REF_DATA
+    index, count, tell = Op.INDEX_DATA, Op.FOR_DATA, Op.TELL_DATA
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,15 +96,7 @@ class SystemVariable:
     type: Type
 
 
-Location = (
-    FrameCells
-    | DataCells
-    | ReferenceParameter
-    | ViewParameter
-    | Pushed
-    | PushedView
-    | SystemVariable
-)
+Location = FixedCells | ReferenceParameter | ViewParameter | Pushed | PushedView | SystemVariable
 
 
 @dataclass(frozen=True, slots=True)
