@@ -8,7 +8,7 @@ from rich.console import Console
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors
 from krl.extras import need
-from krl.terminal.options import JobsOption, JsonOption, all_cores
+from krl.terminal.options import JobsOption, JsonOption, all_cores, scheduler_option
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 
@@ -35,13 +35,7 @@ def fuzz(
     ] = None,
     json_file: JsonOption = None,
     jobs: JobsOption = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="A trusted Dask cluster (it can run code here) whose workers run the programs.",
-        ),
-    ] = None,
+    scheduler: Annotated[str | None, scheduler_option("run the programs")] = None,
 ) -> int:
     """Generate random programs, run each on all executors, and compare every request and event.
 

@@ -18,6 +18,7 @@ from krl.terminal.options import (
     JsonTooOption,
     corpus_or_ours,
     negatives_or_ours,
+    scheduler_option,
 )
 from krl.terminal.output_files import check_targets, write_json
 from krl.terminal.progress import progress_bar
@@ -45,13 +46,7 @@ def recover(
     ] = _DEFAULT_OUT,
     json_file: JsonTooOption = None,
     jobs: JobsOrOneOption = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="A trusted Dask cluster (it can run code here) whose workers read the files.",
-        ),
-    ] = None,
+    scheduler: Annotated[str | None, scheduler_option("read the files")] = None,
     negatives: Annotated[
         Path | None,
         typer.Option(

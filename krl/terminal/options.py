@@ -3,7 +3,7 @@
 import os
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -49,6 +49,12 @@ CorpusArgument = Annotated[
 _CORPUS = Path("corpus")
 _NEGATIVES = Path("corpus", "negatives")
 _OURS = (Path("corpus", "programs"), Path("corpus", "open"))
+
+
+def scheduler_option(work: str) -> Any:
+    """Return the option for a Dask cluster whose workers do this work."""
+    help_text = f"A trusted Dask cluster (it can run code here) whose workers {work}."
+    return typer.Option(metavar="ADDRESS", help=help_text)
 
 
 def all_cores(jobs: int | None) -> int:

@@ -13,7 +13,7 @@ from rich.table import Table
 
 from krl.errors import FINDINGS, FINE, one_line
 from krl.running.project_sources import sources_below
-from krl.running.run_options import Executor, Robot
+from krl.running.run_options import ExecutorOption, Robot
 from krl.terminal.options import (
     JobsOption,
     JsonOption,
@@ -69,9 +69,7 @@ def _kinds(value: str) -> str:
 
 def programs(
     paths: ProgramsArgument = None,
-    executor: Annotated[
-        Executor | None, typer.Option(help="Default: native, or vm if native is not built.")
-    ] = None,
+    executor: ExecutorOption = None,
     robot: Annotated[Robot, typer.Option(help="The arm that moves.")] = Robot.NONE,
     strict: Annotated[
         bool, typer.Option("--strict", help="Use no stand-ins for what a backup lacks.")

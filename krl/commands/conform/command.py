@@ -14,7 +14,7 @@ from rich.console import Console
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line, shown
 from krl.extras import ARM, expected_extras, need
-from krl.terminal.options import JobsOption, JsonOption
+from krl.terminal.options import JobsOption, JsonOption, scheduler_option
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import figures
@@ -93,13 +93,7 @@ def conform(
     seed: Annotated[int, typer.Option(metavar="N", help="pairs: seed of the programs.")] = 1,
     list_: Annotated[bool, typer.Option("--list", help="List the cases; run nothing.")] = False,
     jobs: JobsOption = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="A trusted Dask cluster (it can run code here) whose workers run the cases.",
-        ),
-    ] = None,
+    scheduler: Annotated[str | None, scheduler_option("run the cases")] = None,
 ) -> int:
     """Run conformance cases, and compare results with expectations and between executors.
 
