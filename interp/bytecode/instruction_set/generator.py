@@ -53,7 +53,6 @@ def _opcodes() -> str:
 
 
 def _header() -> str:
-    kinds = list(OPERAND_KINDS)
     ends = [f"op == KRL_{one.name}" for one in instructions() if "ends" in one.flags]
     lines = [
         f"/* {_MADE_BY}. */",
@@ -64,17 +63,9 @@ def _header() -> str:
         f"#define KRL_IMAGE_FORMAT {FORMAT}",
         f"#define KRL_MAX_CELLS {MAX_CELLS}",
         "",
-        "/* Kinds of operands, packed in one byte each, the first operand lowest. */",
-        "enum krl_operand {",
-        *(
-            f"    KRL_OPERAND_{kind.upper()} = {number}, /* {OPERAND_KINDS[kind].meaning} */"
-            for number, kind in enumerate(kinds, start=1)
-        ),
-        "};",
-        "",
-        "/* X(name, number of operands, kinds of operands), in the order of the opcodes. */",
+        "/* X(name, number of operands, place of a target or -1), in the order of the opcodes. */",
         "#define KRL_OPCODES(X) \\",
-        *(f"    {_entry(one, kinds)} \\" for one in instructions()),
+        *(f"    {_entry(one)} \\" for one in instructions()),
         "",
         "enum krl_opcode {",
         *(f"    KRL_{one.name} = {one.number}, /* {one.effect} */" for one in instructions()),
@@ -103,9 +94,9 @@ def _header() -> str:
     return "\n".join(lines) + "\n"
 
 
-def _entry(one: Shape, kinds: list[str]) -> str:
-    packed = sum((kinds.index(kind) + 1) << 8 * place for place, kind in enumerate(one.operands))
-    return f"X({one.name}, {len(one.operands)}, 0x{packed:08x})"
+def _entry(one: Shape) -> str:
+    target = one.operands.index("target") if "target" in one.operands else -1
+    return f"X({one.name}, {len(one.operands)}, {target})"
 
 
 def _rows() -> str:

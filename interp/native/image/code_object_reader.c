@@ -3,10 +3,10 @@
 
 struct shape {
     int32_t operands;
-    uint32_t kinds;
+    int32_t target; /* which operand is the target of a jump, or -1 */
 };
 static const struct shape shapes[] = {
-#define SHAPE(name, count, kinds) {count, kinds},
+#define SHAPE(name, count, target) {count, target},
     KRL_OPCODES(SHAPE)
 #undef SHAPE
 };
@@ -62,12 +62,11 @@ static void read_body(struct reader *reader, struct krl_code *code)
     }
     code->is_target[0] = 1;
     for (int32_t i = 0; i < code->length; i++)
-        for (int32_t j = 0; j < shapes[code->body[i].op].operands; j++)
-            if ((shapes[code->body[i].op].kinds >> 8 * j & 0xff) == KRL_OPERAND_TARGET) {
-                int32_t target = numbers[code->body[i].operands[j]];
-                code->body[i].operands[j] = target;
-                code->is_target[target] = 1;
-            }
+        if (shapes[code->body[i].op].target >= 0) {
+            int32_t *target = &code->body[i].operands[shapes[code->body[i].op].target];
+            *target = numbers[*target];
+            code->is_target[*target] = 1;
+        }
 }
 
 static void read_code(struct reader *reader, struct krl_code *code)

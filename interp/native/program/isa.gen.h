@@ -6,134 +6,115 @@
 #define KRL_IMAGE_FORMAT 4
 #define KRL_MAX_CELLS 1048576
 
-/* Kinds of operands, packed in one byte each, the first operand lowest. */
-enum krl_operand {
-    KRL_OPERAND_INT = 1, /* a signed integer */
-    KRL_OPERAND_REAL = 2, /* the bits of a single-precision number */
-    KRL_OPERAND_BOOL = 3, /* 0 or 1 */
-    KRL_OPERAND_CHAR = 4, /* a code, 0 to 255 */
-    KRL_OPERAND_COUNT = 5, /* an unsigned integer */
-    KRL_OPERAND_LINE = 6, /* a line of the source file, from 1 on */
-    KRL_OPERAND_TARGET = 7, /* an instruction of the same code object: its first word, counted from 0 */
-    KRL_OPERAND_LOCAL = 8, /* a cell of the frame */
-    KRL_OPERAND_DATA = 9, /* a cell of the data lists */
-    KRL_OPERAND_TYPE = 10, /* a type of the program */
-    KRL_OPERAND_TEXT = 11, /* a text of the program */
-    KRL_OPERAND_CODE = 12, /* a code object */
-    KRL_OPERAND_ASK = 13, /* an entry of the table of requests */
-    KRL_OPERAND_BUILTIN = 14, /* an entry of the table of predefined functions */
-    KRL_OPERAND_FAULT = 15, /* a fault of the catalogue, by its code */
-};
-
-/* X(name, number of operands, kinds of operands), in the order of the opcodes. */
+/* X(name, number of operands, place of a target or -1), in the order of the opcodes. */
 #define KRL_OPCODES(X) \
-    X(LINE, 2, 0x00000706) \
-    X(AT, 2, 0x00000706) \
-    X(JUMP, 1, 0x00000007) \
-    X(JUMP_IF, 1, 0x00000007) \
-    X(JUMP_UNLESS, 1, 0x00000007) \
-    X(CASE, 2, 0x00000701) \
-    X(CALL, 1, 0x0000000c) \
-    X(RETURN, 0, 0x00000000) \
-    X(RETURN_VALUE, 0, 0x00000000) \
-    X(ASK, 1, 0x0000000d) \
-    X(BUILTIN, 1, 0x0000000e) \
-    X(PROCEED, 0, 0x00000000) \
-    X(FAIL, 1, 0x0000000f) \
-    X(UNLINKED, 1, 0x0000000b) \
-    X(PUSH_INT, 1, 0x00000001) \
-    X(PUSH_REAL, 1, 0x00000002) \
-    X(PUSH_BOOL, 1, 0x00000003) \
-    X(PUSH_CHAR, 1, 0x00000004) \
-    X(PUSH_ENUM, 2, 0x0000050a) \
-    X(PUSH_NOTHING, 0, 0x00000000) \
-    X(PUSH_NO_VIEW, 2, 0x0000050a) \
-    X(DROP, 0, 0x00000000) \
-    X(LOAD_LOCAL, 1, 0x00000008) \
-    X(LOAD_DATA, 1, 0x00000009) \
-    X(STORE_LOCAL, 1, 0x00000008) \
-    X(STORE_DATA, 1, 0x00000009) \
-    X(REF_LOCAL, 2, 0x00000a08) \
-    X(REF_DATA, 2, 0x00000a09) \
-    X(LOAD_REF, 1, 0x00000008) \
-    X(LOAD, 0, 0x00000000) \
-    X(STORE, 0, 0x00000000) \
-    X(MEMBER, 2, 0x00000a05) \
-    X(INDEX, 1, 0x0000000a) \
-    X(INDEX_LOCAL, 2, 0x00000a08) \
-    X(INDEX_DATA, 2, 0x00000a09) \
-    X(INDEX_VIEW, 1, 0x00000008) \
-    X(ELEMENT_LOCAL, 2, 0x00000a08) \
-    X(ELEMENT_DATA, 2, 0x00000a09) \
-    X(VIEW, 1, 0x0000000a) \
-    X(LOAD_VIEW, 1, 0x00000008) \
-    X(PASS_VIEW, 1, 0x00000008) \
-    X(ROW, 2, 0x0000050a) \
-    X(ROW_VIEW, 2, 0x00000508) \
-    X(COPY, 1, 0x0000000a) \
-    X(CLEAR, 1, 0x0000000a) \
-    X(FILL_POSE, 2, 0x00000a0a) \
-    X(FILL_ARRAY, 2, 0x0000050a) \
-    X(COPY_VIEW, 2, 0x00000a08) \
-    X(SET_TEXT, 1, 0x0000000b) \
-    X(ADD_INT, 0, 0x00000000) \
-    X(SUB_INT, 0, 0x00000000) \
-    X(MUL_INT, 0, 0x00000000) \
-    X(DIV_INT, 0, 0x00000000) \
-    X(NEG_INT, 0, 0x00000000) \
-    X(ADD_REAL, 0, 0x00000000) \
-    X(SUB_REAL, 0, 0x00000000) \
-    X(MUL_REAL, 0, 0x00000000) \
-    X(DIV_REAL, 0, 0x00000000) \
-    X(NEG_REAL, 0, 0x00000000) \
-    X(EQ_INT, 0, 0x00000000) \
-    X(NE_INT, 0, 0x00000000) \
-    X(LT_INT, 0, 0x00000000) \
-    X(GT_INT, 0, 0x00000000) \
-    X(LE_INT, 0, 0x00000000) \
-    X(GE_INT, 0, 0x00000000) \
-    X(EQ_REAL, 0, 0x00000000) \
-    X(NE_REAL, 0, 0x00000000) \
-    X(LT_REAL, 0, 0x00000000) \
-    X(GT_REAL, 0, 0x00000000) \
-    X(LE_REAL, 0, 0x00000000) \
-    X(GE_REAL, 0, 0x00000000) \
-    X(EQ_BOOL, 0, 0x00000000) \
-    X(NE_BOOL, 0, 0x00000000) \
-    X(EQ_ENUM, 0, 0x00000000) \
-    X(NE_ENUM, 0, 0x00000000) \
-    X(NOT_BOOL, 0, 0x00000000) \
-    X(AND_BOOL, 0, 0x00000000) \
-    X(OR_BOOL, 0, 0x00000000) \
-    X(EXOR_BOOL, 0, 0x00000000) \
-    X(NOT_BITS, 0, 0x00000000) \
-    X(AND_BITS, 0, 0x00000000) \
-    X(OR_BITS, 0, 0x00000000) \
-    X(EXOR_BITS, 0, 0x00000000) \
-    X(COMPOSE, 2, 0x00000a0a) \
-    X(INT_TO_REAL, 0, 0x00000000) \
-    X(REAL_TO_INT, 0, 0x00000000) \
-    X(CHAR_TO_INT, 0, 0x00000000) \
-    X(INT_TO_CHAR, 0, 0x00000000) \
-    X(ADD_CONSTANT, 1, 0x00000001) \
-    X(UNLESS_EQ_INT, 1, 0x00000007) \
-    X(UNLESS_NE_INT, 1, 0x00000007) \
-    X(UNLESS_LT_INT, 1, 0x00000007) \
-    X(UNLESS_GT_INT, 1, 0x00000007) \
-    X(UNLESS_LE_INT, 1, 0x00000007) \
-    X(UNLESS_GE_INT, 1, 0x00000007) \
-    X(UNLESS_LT_REAL, 1, 0x00000007) \
-    X(UNLESS_GT_REAL, 1, 0x00000007) \
-    X(UNLESS_LE_REAL, 1, 0x00000007) \
-    X(UNLESS_GE_REAL, 1, 0x00000007) \
-    X(FOR_LOCAL, 4, 0x07010808) \
-    X(FOR_DATA, 4, 0x07010809) \
-    X(TELL_LOCAL, 2, 0x00000a08) \
-    X(TELL_DATA, 2, 0x00000a09) \
-    X(TELL_REF, 3, 0x00050a08) \
-    X(TELL, 2, 0x0000050a) \
-    X(TELL_BRANCH, 1, 0x00000001) \
-    X(PASS_LOCAL, 1, 0x00000008) \
+    X(LINE, 2, 1) \
+    X(AT, 2, 1) \
+    X(JUMP, 1, 0) \
+    X(JUMP_IF, 1, 0) \
+    X(JUMP_UNLESS, 1, 0) \
+    X(CASE, 2, 1) \
+    X(CALL, 1, -1) \
+    X(RETURN, 0, -1) \
+    X(RETURN_VALUE, 0, -1) \
+    X(ASK, 1, -1) \
+    X(BUILTIN, 1, -1) \
+    X(PROCEED, 0, -1) \
+    X(FAIL, 1, -1) \
+    X(UNLINKED, 1, -1) \
+    X(PUSH_INT, 1, -1) \
+    X(PUSH_REAL, 1, -1) \
+    X(PUSH_BOOL, 1, -1) \
+    X(PUSH_CHAR, 1, -1) \
+    X(PUSH_ENUM, 2, -1) \
+    X(PUSH_NOTHING, 0, -1) \
+    X(PUSH_NO_VIEW, 2, -1) \
+    X(DROP, 0, -1) \
+    X(LOAD_LOCAL, 1, -1) \
+    X(LOAD_DATA, 1, -1) \
+    X(STORE_LOCAL, 1, -1) \
+    X(STORE_DATA, 1, -1) \
+    X(REF_LOCAL, 2, -1) \
+    X(REF_DATA, 2, -1) \
+    X(LOAD_REF, 1, -1) \
+    X(LOAD, 0, -1) \
+    X(STORE, 0, -1) \
+    X(MEMBER, 2, -1) \
+    X(INDEX, 1, -1) \
+    X(INDEX_LOCAL, 2, -1) \
+    X(INDEX_DATA, 2, -1) \
+    X(INDEX_VIEW, 1, -1) \
+    X(ELEMENT_LOCAL, 2, -1) \
+    X(ELEMENT_DATA, 2, -1) \
+    X(VIEW, 1, -1) \
+    X(LOAD_VIEW, 1, -1) \
+    X(PASS_VIEW, 1, -1) \
+    X(ROW, 2, -1) \
+    X(ROW_VIEW, 2, -1) \
+    X(COPY, 1, -1) \
+    X(CLEAR, 1, -1) \
+    X(FILL_POSE, 2, -1) \
+    X(FILL_ARRAY, 2, -1) \
+    X(COPY_VIEW, 2, -1) \
+    X(SET_TEXT, 1, -1) \
+    X(ADD_INT, 0, -1) \
+    X(SUB_INT, 0, -1) \
+    X(MUL_INT, 0, -1) \
+    X(DIV_INT, 0, -1) \
+    X(NEG_INT, 0, -1) \
+    X(ADD_REAL, 0, -1) \
+    X(SUB_REAL, 0, -1) \
+    X(MUL_REAL, 0, -1) \
+    X(DIV_REAL, 0, -1) \
+    X(NEG_REAL, 0, -1) \
+    X(EQ_INT, 0, -1) \
+    X(NE_INT, 0, -1) \
+    X(LT_INT, 0, -1) \
+    X(GT_INT, 0, -1) \
+    X(LE_INT, 0, -1) \
+    X(GE_INT, 0, -1) \
+    X(EQ_REAL, 0, -1) \
+    X(NE_REAL, 0, -1) \
+    X(LT_REAL, 0, -1) \
+    X(GT_REAL, 0, -1) \
+    X(LE_REAL, 0, -1) \
+    X(GE_REAL, 0, -1) \
+    X(EQ_BOOL, 0, -1) \
+    X(NE_BOOL, 0, -1) \
+    X(EQ_ENUM, 0, -1) \
+    X(NE_ENUM, 0, -1) \
+    X(NOT_BOOL, 0, -1) \
+    X(AND_BOOL, 0, -1) \
+    X(OR_BOOL, 0, -1) \
+    X(EXOR_BOOL, 0, -1) \
+    X(NOT_BITS, 0, -1) \
+    X(AND_BITS, 0, -1) \
+    X(OR_BITS, 0, -1) \
+    X(EXOR_BITS, 0, -1) \
+    X(COMPOSE, 2, -1) \
+    X(INT_TO_REAL, 0, -1) \
+    X(REAL_TO_INT, 0, -1) \
+    X(CHAR_TO_INT, 0, -1) \
+    X(INT_TO_CHAR, 0, -1) \
+    X(ADD_CONSTANT, 1, -1) \
+    X(UNLESS_EQ_INT, 1, 0) \
+    X(UNLESS_NE_INT, 1, 0) \
+    X(UNLESS_LT_INT, 1, 0) \
+    X(UNLESS_GT_INT, 1, 0) \
+    X(UNLESS_LE_INT, 1, 0) \
+    X(UNLESS_GE_INT, 1, 0) \
+    X(UNLESS_LT_REAL, 1, 0) \
+    X(UNLESS_GT_REAL, 1, 0) \
+    X(UNLESS_LE_REAL, 1, 0) \
+    X(UNLESS_GE_REAL, 1, 0) \
+    X(FOR_LOCAL, 4, 3) \
+    X(FOR_DATA, 4, 3) \
+    X(TELL_LOCAL, 2, -1) \
+    X(TELL_DATA, 2, -1) \
+    X(TELL_REF, 3, -1) \
+    X(TELL, 2, -1) \
+    X(TELL_BRANCH, 1, -1) \
+    X(PASS_LOCAL, 1, -1) \
 
 enum krl_opcode {
     KRL_LINE = 0, /* -- */
