@@ -1,7 +1,6 @@
 """`krl run`: a program on the controller, with an arm that moves."""
 
 import json
-import signal
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -9,7 +8,6 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from enum import StrEnum
 from pathlib import Path
-from threading import current_thread, main_thread
 from typing import TYPE_CHECKING, Annotated, Any, BinaryIO
 
 import typer
@@ -27,6 +25,7 @@ from krl.running.run_options import (
 from krl.terminal.output_files import check_files
 from krl.terminal.progress import progress_bar
 from support.files.atomic_write import atomic_path
+from support.parallel.termination import on_termination
 
 if TYPE_CHECKING:
     from interp.controller.state.trace import TraceEvent
@@ -211,12 +210,7 @@ def _tracing(file: Path | None, most: int) -> Iterator[_TraceWriter | None]:
     if file is None:
         yield None
         return
-    is_ours = (
-        current_thread() is main_thread() and signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
-    )
-    if is_ours:
-        signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
-    try:
+    with on_termination(lambda number, _: sys.exit(128 + number)):
         ended: KeyboardInterrupt | SystemExit | None = None
         with atomic_path(file) as part, part.open("wb") as stream:
             try:
@@ -226,9 +220,6 @@ def _tracing(file: Path | None, most: int) -> Iterator[_TraceWriter | None]:
         if ended is not None:
             typer.echo(one_line(f"trace: {file} ends where the run was interrupted"), err=True)
             raise ended
-    finally:
-        if is_ours:
-            signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 def _write(

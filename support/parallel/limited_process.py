@@ -9,7 +9,9 @@ import sys
 from codecs import getincrementaldecoder
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from threading import Thread, current_thread, main_thread
+from threading import Thread
+
+from support.parallel.termination import on_termination
 
 _GRACE = 30.0
 #: A shell kills its process group as soon as nobody holds the other end of standard input.
@@ -91,14 +93,10 @@ def _ended_by_termination() -> Iterator[Callable[[subprocess.Popen[bytes]], None
         for process in running:
             _kill(process)
 
-    if current_thread() is not main_thread():  # only the main thread may set a handler
-        yield started
-        return
-    before = signal.signal(signal.SIGTERM, end)
     try:
-        yield started
+        with on_termination(end):
+            yield started
     finally:
-        signal.signal(signal.SIGTERM, before)
         if signals:
             raise SystemExit(128 + signals[0])
 

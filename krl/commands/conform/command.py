@@ -1,7 +1,6 @@
 """`krl conform`: runs the conformance cases on any executors and robots."""
 
 import signal
-import threading
 import time
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -18,6 +17,7 @@ from krl.terminal.options import JobsOption, JsonOption, scheduler_option
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import figures
+from support.parallel.termination import on_termination
 
 if TYPE_CHECKING:
     from conformance.runner import CaseResult
@@ -267,35 +267,20 @@ def _run(
 ) -> "tuple[list[CaseResult], list[str]]":
     """Return the results of the cases, and, if this process was terminated, what was running."""
     from conformance.evaluation.verdicts import KnownFailures
-    from conformance.runner import run_cases
+    from conformance.runner import Stopped, run_cases
+
+    def stop(_signal: int, _frame: object) -> NoReturn:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # once is enough
+        raise Stopped
 
     try:
         known = KnownFailures.load()
     except (OSError, ValueError) as error:
         raise InputError(f"the list of known failures cannot be read: {error}") from error
     running: list[str] = []
-    with progress_bar("running cases", len(cases)) as bar, _stopped_by_termination():
+    with progress_bar("running cases", len(cases)) as bar, on_termination(stop):
         given = (known, jobs, bar, scheduler, running.extend)
         return run_cases(cases, executors, robots, *given), running
-
-
-@contextmanager
-def _stopped_by_termination() -> Iterator[None]:
-    """Let SIGTERM end `run_cases` early."""
-    from conformance.runner import Stopped
-
-    def stop(_signal: int, _frame: object) -> NoReturn:
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # once is enough
-        raise Stopped
-
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGTERM, stop)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def _write(
