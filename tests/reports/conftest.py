@@ -128,60 +128,12 @@ CAUSES = (
     ),
 )
 ORIGINS = ("cell-07.zip", "palletising-demo", "glue_line_west", "weld-backup-2019", "training")
-EXPECTED = [
-    "';'",
-    "'='",
-    "'('",
-    "'['",
-    "','",
-    "'.'",
-    "':'",
-    "NEWLINE",
-    "IDENTIFIER",
-    "INT_LITERAL",
-    "REAL_LITERAL",
-    "STRING",
-    "AND",
-    "B_AND",
-    "B_EXOR",
-    "B_NOT",
-    "B_OR",
-    "C_DIS",
-    "C_ORI",
-    "C_PTP",
-    "C_SPL",
-    "C_VEL",
-    "DELAY",
-    "DO",
-    "ELSE",
-    "ENDFOR",
-    "ENDIF",
-    "ENDLOOP",
-    "ENDSWITCH",
-    "ENDWHILE",
-    "EXOR",
-    "FALSE",
-    "HALT",
-    "IF",
-    "INTERRUPT",
-    "LIN",
-    "LOOP",
-    "NOT",
-    "OR",
-    "PATH",
-    "PRIO",
-    "PTP",
-    "REPEAT",
-    "RETURN",
-    "STEP",
-    "SWITCH",
-    "THEN",
-    "TO",
-    "TRUE",
-    "UNTIL",
-    "WAIT",
-    "WHILE",
-]
+EXPECTED = (
+    "';' '=' '(' '[' ',' '.' ':' NEWLINE IDENTIFIER INT_LITERAL REAL_LITERAL STRING AND "
+    "B_AND B_EXOR B_NOT B_OR C_DIS C_ORI C_PTP C_SPL C_VEL DELAY DO ELSE ENDFOR ENDIF "
+    "ENDLOOP ENDSWITCH ENDWHILE EXOR FALSE HALT IF INTERRUPT LIN LOOP NOT OR PATH PRIO PTP "
+    "REPEAT RETURN STEP SWITCH THEN TO TRUE UNTIL WAIT WHILE"
+).split()
 
 
 def _example(cause: Cause, origin: str, number: int) -> Json:
