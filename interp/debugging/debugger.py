@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Final, TypeVar
 
+from grammar.syntax import ast
 from interp.controller.state.trace import TaskName
 from interp.debugging.breakpoints import Breakpoints, is_path_of
 from interp.debugging.client import (
@@ -27,13 +28,12 @@ from interp.debugging.client import (
 from interp.debugging.executor import DebuggedExecutor
 from interp.debugging.history import START, Assigned, Fits, History, Selected
 from interp.debugging.inspection import Inspection
-from interp.debugging.selection import reason_against
 from interp.debugging.value_text import value_text
 from interp.debugging.watches import Watches
 from interp.port.inspection import Breaks
 from interp.port.requests import Fail
-from interp.program.load import CheckedProgram
-from interp.program.statement_paths import routine_at
+from interp.program.load import CheckedProgram, Routine
+from interp.program.statement_paths import routine_at, way_to
 from interp.values.faults import LinkError, RuntimeFailure
 
 #: Called where a program stops; may inspect and change the run through the debugger.
@@ -351,4 +351,21 @@ class Debugger(Inspection):
             return f"{frame.name} is not known"
         if selected.file and not is_path_of(selected.file, executor.at.file):
             return f"{selected.file}:{selected.line} is not in {frame.name}"
-        return reason_against(routine, executor.at.line, selected.line)
+        return _reason_against_line(routine, executor.at.line, selected.line)
+
+
+def _reason_against_line(routine: Routine, here: int, line: int) -> str:
+    """Return why a program cannot continue at ``line`` when it is at ``here``; "" if it can.
+
+    The limit of a FOR is private to it, so its body can be entered only from inside. No rule says
+    what else the official implementation allows (unconfirmed).
+    """
+    way = way_to(routine, line)
+    if not way:
+        return f"no statement of {routine.name} begins in line {line}"
+    open_blocks = way_to(routine, here)[:-1]
+    for block in way[:-1]:
+        if isinstance(block, ast.For) and block not in open_blocks:
+            first = routine.unit.line(block)
+            return f"line {line} is inside the FOR of line {first}, which has not begun"
+    return ""

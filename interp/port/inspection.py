@@ -108,6 +108,6 @@ class Inspectable(Executor, Protocol):
         Raises `ValueError` if no statement begins there. The blocks around the statement are
         entered without evaluating their conditions. If one of them is a FOR, it must also surround
         the present statement: otherwise its counter and limit are unknown
-        (`interp.debugging.selection` checks this).
+        (`interp.debugging.debugger` checks this).
         """
         ...
