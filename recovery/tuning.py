@@ -439,10 +439,8 @@ FOLD_FILES = 40
 # ---------------------------------------------------------------------------------- reproducers
 # `recovery.reproducer`.
 
-#: Items up to which every stretch and every pair is tried, and up to which stretches are replaced
-#: by one item. Bound: the tests grow with the square, and with the cube.
+#: Items up to which every stretch and every pair is tried. Bound: the tests grow with the square.
 EXHAUSTIVE_ITEMS = 40
-SUBSTITUTED_ITEMS = 120
 #: Configurations before a line from which a program is made. Bound on time.
 MOST_CONFIGURATIONS = 12
 #: Tokens left out at a failure for the rest of the line to be read. Bound.

@@ -2,8 +2,8 @@
 
 This is ddmin (Zeller and Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", 2002),
 with additions that short sequences allow: every stretch is tried and not only halves and quarters,
-pairs of items are removed together, and one item can replace many. The result is 1-minimal: without
-any single item it would not pass.
+and pairs of items are removed together. The result is 1-minimal: without any single item it would
+not pass.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Sequence
 from typing import TypeVar
 
-from recovery.tuning import EXHAUSTIVE_ITEMS, SUBSTITUTED_ITEMS
+from recovery.tuning import EXHAUSTIVE_ITEMS
 
 _T = TypeVar("_T")
 
@@ -31,22 +31,18 @@ def without_loops(items: Sequence[_T], places: Sequence[Hashable]) -> list[_T]:
     return out
 
 
-def minimized(
-    items: Sequence[_T], substitutes: Sequence[_T], passes: Callable[[list[_T]], bool]
-) -> list[_T]:
-    """Return a subsequence in which nothing can be removed or replaced by a substitute."""
+def minimized(items: Sequence[_T], passes: Callable[[list[_T]], bool]) -> list[_T]:
+    """Return a subsequence from which nothing can be removed."""
     left, size = list(items), -1
     while len(left) != size:
         size = len(left)
-        left = without_stretches(left, passes)
-        if size <= SUBSTITUTED_ITEMS:
-            left = _substituted(left, substitutes, passes)
+        left = _without_stretches(left, passes)
         if size <= EXHAUSTIVE_ITEMS:
             left = _without_pairs(left, passes)
     return left
 
 
-def without_stretches(items: list[_T], passes: Callable[[list[_T]], bool]) -> list[_T]:
+def _without_stretches(items: list[_T], passes: Callable[[list[_T]], bool]) -> list[_T]:
     """Return the items with stretches removed, from long ones down to single items."""
     size = len(items)
     while size:
@@ -76,17 +72,4 @@ def _without_pairs(items: list[_T], passes: Callable[[list[_T]], bool]) -> list[
             shorter = items[:start] + items[start + 1 : end] + items[end + 1 :]
             if passes(shorter):
                 return _without_pairs(shorter, passes)
-    return items
-
-
-def _substituted(
-    items: list[_T], substitutes: Sequence[_T], passes: Callable[[list[_T]], bool]
-) -> list[_T]:
-    """Return the items with stretches of two and more replaced by one substitute."""
-    for size in range(len(items), 1, -1):
-        for start in range(len(items) - size, -1, -1):
-            for substitute in substitutes:
-                shorter = [*items[:start], substitute, *items[start + size :]]
-                if passes(shorter):
-                    return _substituted(shorter, substitutes, passes)
     return items

@@ -17,7 +17,7 @@ from grammar.parser.lexer import EOF
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.shortest_paths import Paths
 from recovery.proposals.edit_site import LinePattern
-from recovery.reproducer.ddmin import minimized, without_loops, without_stretches
+from recovery.reproducer.ddmin import minimized, without_loops
 from recovery.reproducer.rendering import AbstractToken, TokenRenderer
 from recovery.reproducer.same_failure import (
     FailureMode,
@@ -70,7 +70,7 @@ class Reducer:
             for may_follow in (False, True):
                 test = SameFailure(self._finder, self._spelling, way, wider, may_follow)
                 for programs in self._programs(line, tokens, wider):
-                    found = [self._smallest(p, test) for p in programs if test.passes(p.whole)]
+                    found = [minimized(p, test.passes) for p in programs if test.passes(p)]
                     if found:
                         return self._reproducer(test, min(found, key=len))
         return None
@@ -82,15 +82,6 @@ class Reducer:
         context = self._finder.context(state)
         words = [meant.get(i) for i in range(len(form.kinds))]
         return failure_mode(self.recognizer, form.kinds, words, form.index, context)
-
-    def _smallest(self, program: _Program, test: SameFailure) -> list[AbstractToken]:
-        """Return the program with as few tokens as the test allows."""
-        line = minimized(
-            program.line,
-            self._spelling.operands,
-            lambda tokens: test.passes(program.before + tokens + program.after),
-        )
-        return without_stretches(program.before + line + program.after, test.passes)
 
     def _reproducer(self, test: SameFailure, tokens: list[AbstractToken]) -> Reproducer:
         text = self._spelling.text(tokens, test.wider)
@@ -114,7 +105,7 @@ class Reducer:
 
     def _programs(
         self, line: LinePattern, tokens: list[AbstractToken], wider: Recognizer | None
-    ) -> Iterator[list[_Program]]:
+    ) -> Iterator[list[list[AbstractToken]]]:
         """Yield groups of programs around the line, one group for each place, shortest first."""
         recognizer, form, line_kind = self.recognizer, line.form, self.recognizer.line_kind
         ways_out = None if wider is None else Paths(wider.network)
@@ -139,7 +130,7 @@ class Reducer:
                 beyond.append(self._spelling.frame(way, wider))
             for bodies in (self._shortened(start, before, body, wider), [body]):
                 yield [
-                    _Program(before, chosen, after)
+                    before + chosen + after
                     for chosen in bodies
                     for after in [*self._endings(start, chosen), *beyond]
                 ]
@@ -205,19 +196,6 @@ class Reducer:
 
 
 @dataclass(frozen=True, slots=True)
-class _Program:
-    """A line with the tokens before and after it."""
-
-    before: list[AbstractToken]
-    line: list[AbstractToken]
-    after: list[AbstractToken]
-
-    @property
-    def whole(self) -> list[AbstractToken]:
-        return self.before + self.line + self.after
-
-
-@dataclass(frozen=True, slots=True)
 class _FailurePoint:
     """Where a line fails and in what state, and how it can be continued.
 
@@ -236,23 +214,14 @@ def _readable(
 ) -> tuple[list[AbstractToken], State] | None:
     """Return the line as a wider grammar reads it, and the state after it.
 
-    If that fails too, at a later token than the line did, the tokens there are left out, or else
-    the rest of the line. Returns ``None`` if it fails no later.
+    If that fails at a later token than the line did, the rest of the line is left out. Returns
+    ``None`` if it fails no later.
     """
     start, failed = wider.run(wider.start, kinds_in(wider, before))
     if failed is not None:
         return None
-    kinds = kinds_in(wider, line)
-    state, failed = wider.run(start, kinds)
-    if failed is None:
-        return line, state
-    if failed <= index:
-        return None
-    for gap in range(1, min(len(kinds) - failed, LONGEST_GAP + 1)):
-        end, left = wider.run(state, kinds[failed + gap :])
-        if left is None:
-            return line[:failed] + line[failed + gap :], end
-    return line[:failed], state
+    state, failed = wider.run(start, kinds_in(wider, line))
+    return None if failed is not None and failed <= index else (line[:failed], state)
 
 
 def _states(

@@ -48,11 +48,6 @@ class TokenRenderer:
         self.lexer = recognizer.lexer
         self._speller = Speller(recognizer.grammar)
         self._name = self.lexer.name_kind
-        number = self.lexer.kinds["1"]
-        #: Tokens that may replace a longer expression.
-        self.operands = tuple(
-            AbstractToken(kind, "operand") for kind in (self._name, number) if kind > 0
-        )
         self._fixed: dict[int, str] = {}
         self._forms: dict[int, str] = {}
         for kind, name in enumerate(self.lexer.names):
