@@ -6,6 +6,8 @@ Its fields are a contract (docs/survey-record.md): others read it from outside.
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import asdict
+from typing import cast
 
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import Cluster, Clusters, Member
@@ -116,15 +118,7 @@ def _reproducer(cluster: Cluster, reviewer: Reviewer, reducer: Reducer) -> Repro
     best = next((p for p in cluster.proposals if p.mended), None)
     mended = reviewer.wider(best) if best is not None else None
     found = reducer.reduce(cluster.line, cluster.example.failed.words, mended=mended)
-    if found is None:
-        return None
-    return {
-        "text": found.text,
-        "line": found.line,
-        "column": found.column,
-        "tokens": found.tokens,
-        "beyond": found.beyond,
-    }
+    return cast("ReproducerRecord", asdict(found)) if found else None
 
 
 def _example(member: Member) -> ExampleRecord:

@@ -20,7 +20,7 @@ from itertools import pairwise
 
 from grammar.blocks import BLOCKS, CLOSERS, OUTERMOST
 from grammar.motion_kinds import MOTIONS, PLAIN_MOTIONS
-from recovery.brackets import BRACKETS, CLOSING
+from recovery.brackets import BRACKETS, CLOSING, closer_of
 from recovery.negatives.tokens import RESERVED, SourceLine, lines
 
 
@@ -90,16 +90,6 @@ def _brackets(line: SourceLine) -> str | None:
         elif kind in CLOSING and (not expected or expected.pop() != kind):
             return "a closing bracket belongs to an opening one of its form on the same line"
     return "a bracket is closed on its line" if expected else None
-
-
-def _behind_closer(kinds: Sequence[str]) -> int:
-    """Return the index after the bracket that closes the first one."""
-    depth = 0
-    for index, kind in enumerate(kinds):
-        depth += (kind in BRACKETS) - (kind in CLOSING)
-        if not depth:
-            return index + 1
-    return len(kinds)
 
 
 # ----------------------------------------------------------------------------- expressions
@@ -259,7 +249,7 @@ def _assignment_or_call(line: SourceLine) -> str | None:
     if following in _RELATIONS or following in ("*", "/", "AND", "OR"):
         return "an expression is no statement"
     if following == "(":
-        end += _behind_closer(kinds[end:])
+        end += 1 + (closer_of(kinds[end:]) or 0)
         if kinds[end : end + 1] in (("name",), ("number",), ("=",)):
             return "a call is followed by nothing"
     return None
@@ -270,7 +260,7 @@ def _behind_variable(kinds: Sequence[str]) -> int:
     at = 1
     while at < len(kinds):
         if kinds[at] == "[":
-            at += _behind_closer(kinds[at:])
+            at += 1 + (closer_of(kinds[at:]) or 0)
         elif kinds[at] == "." and kinds[at + 1 : at + 2] == ("name",):
             at += 2
         else:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Any
 
 from grammar.notation.model import Grammar
@@ -27,7 +27,7 @@ def recall(store: ResultStore, digest: str) -> Kept | None:
     try:
         data = store.get(digest)
         return None if data is None else _read(data)
-    except (ValueError, TypeError, KeyError, IndexError, AssertionError):
+    except (ValueError, TypeError):
         return None
 
 
@@ -47,19 +47,6 @@ def _read(data: Any) -> Kept:
     if isinstance(data, str):
         return data
     failures, forms, (read, bound) = data
-    names = NameUse(tuple(_words(read)), tuple(_words(bound)))
-    return tuple(map(as_failing_line, failures)), tuple(_forms(forms)), names
-
-
-def _words(words: list[object]) -> Iterator[str]:
-    for word in words:
-        assert isinstance(word, str)
-        yield sys.intern(word)
-
-
-def _forms(forms: list[list[object]]) -> Iterator[Form]:
-    for before, kinds, index in forms:
-        assert isinstance(before, list)
-        assert isinstance(kinds, list)
-        assert isinstance(index, int)
-        yield Form(tuple(map(tuple, before)), tuple(kinds), index)
+    names = NameUse(tuple(map(sys.intern, read)), tuple(map(sys.intern, bound)))
+    found = (Form(tuple(map(tuple, before)), tuple(kinds), index) for before, kinds, index in forms)
+    return tuple(map(as_failing_line, failures)), tuple(found), names
