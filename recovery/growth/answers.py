@@ -7,12 +7,13 @@ answered by the construct from which on most of its lines can be read.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TypedDict
 
 from grammar.notation.model import Grammar
 from recovery.growth.growth import LedgerSteps
-from recovery.growth.timeline import Content, Timeline, read_through
+from recovery.growth.timeline import Timeline, read_through
 from recovery.ledger.construct_record import construct_record
 from recovery.records import ClusterRecord, ConstructRecord
 from recovery.survey.survey import Survey
@@ -45,7 +46,7 @@ def answered(
     grammars = [found.grammar, *(grammar for _, grammar in steps)]
     wanted = {path for cluster in clusters for path, _ in _lines(cluster)}
     contents = [
-        Content(file.found, file.places, file.digest, file.size)
+        replace(file, failures=())  # they are on a disk that other processes do not know
         for file in found.files
         if file.path in wanted
     ]

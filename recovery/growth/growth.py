@@ -16,13 +16,14 @@ from typing import cast
 
 from grammar.notation.model import Grammar
 from recovery.growth.remaining import ambiguous_lines, remaining
-from recovery.growth.timeline import Content, Timeline, contents_of, read_through
+from recovery.growth.timeline import Timeline, contents_of, read_through
 from recovery.ledger.construct import Construct
 from recovery.ledger.construct_record import START_RECORD, construct_record
 from recovery.ledger.lookahead import decisions, share_decided
 from recovery.ledger.metrics import MEANINGS, metrics
 from recovery.records import GrowthRecord, SkippedRecord, StepRecord
 from recovery.survey.result_cache import key_of
+from recovery.survey.surveyed_files import SurveyedFile
 from support.files.discovery import Skipped
 from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, no_progress
@@ -107,7 +108,7 @@ def _record(
     }
 
 
-def _bytes(contents: Iterable[Content]) -> int:
+def _bytes(contents: Iterable[SurveyedFile]) -> int:
     return sum(c.size * len(c.places) for c in contents)
 
 

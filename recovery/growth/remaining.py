@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TypedDict
@@ -12,7 +12,6 @@ from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.failures import FailureFinder
 from grammar.parser.line_reader import LineReader, Spot
 from grammar.parser.recognizer import Recognizer
-from recovery.growth.timeline import Content
 from recovery.negatives.language_facts import violation
 from recovery.records import (
     AmbiguousLineRecord,
@@ -21,8 +20,7 @@ from recovery.records import (
     RemainingLineRecord,
 )
 from recovery.survey.failing_line import failures_of, source_lines
-from support.files.decode import digest
-from support.files.discovery import SourceFile, read_source
+from recovery.survey.surveyed_files import SurveyedFile
 
 _REASONS = Path(__file__).with_name("remaining.tsv")
 _EXAMPLES = 20
@@ -36,7 +34,7 @@ class Remaining(TypedDict):
     remaining_files: list[RemainingFileRecord]
 
 
-def remaining(contents: Sequence[Content], grammar: Grammar) -> Remaining:
+def remaining(contents: Sequence[SurveyedFile], grammar: Grammar) -> Remaining:
     """Return the files that do not parse and their failing lines.
 
     ``fact`` of a file is a fact that every KRL program obeys (`recovery.negatives.language_facts`)
@@ -48,7 +46,10 @@ def remaining(contents: Sequence[Content], grammar: Grammar) -> Remaining:
     finder = FailureFinder(Recognizer(grammar))
     lines: list[RemainingLineRecord] = []
     files: list[RemainingFileRecord] = []
-    for content, text in _texts(contents):
+    for content in contents:
+        text = content.text()
+        if text is None:
+            continue
         failures = failures_of(finder, text, {})
         broken = violation(text)
         known = ("invalid", broken.fact) if broken else ("", "")
@@ -89,7 +90,7 @@ def _reasons() -> Mapping[str, tuple[str, str]]:
     return {digest: (kind, reason) for digest, kind, _, _, reason in rows}
 
 
-def ambiguous_lines(contents: Sequence[Content], grammar: Grammar) -> AmbiguousRecord:
+def ambiguous_lines(contents: Sequence[SurveyedFile], grammar: Grammar) -> AmbiguousRecord:
     """Return how many lines in files that parse have two readings, with the first as examples.
 
     Each line is examined in its context. ``lines`` is the number of ambiguous lines, copies left
@@ -100,7 +101,10 @@ def ambiguous_lines(contents: Sequence[Content], grammar: Grammar) -> AmbiguousR
     known: dict[tuple[Spot, int], bool] = {}
     examples: list[AmbiguousLineRecord] = []
     count = total = 0
-    for content, text in _texts(contents):
+    for content in contents:
+        text = content.text()
+        if text is None:
+            continue
         spot = reader.spot(recognizer.start)
         found: list[int] = []
         *lines, _ = reader.numbers(recognizer.kinds(text))  # the last is the end of the file
@@ -124,11 +128,3 @@ def ambiguous_lines(contents: Sequence[Content], grammar: Grammar) -> AmbiguousR
                 if n <= len(written)
             ]
     return {"lines": count, "of": total, "examples": examples[:_EXAMPLES]}
-
-
-def _texts(contents: Sequence[Content]) -> Iterator[tuple[Content, str]]:
-    """Yield the contents with their texts, except those that have changed since the survey."""
-    for content in contents:
-        file = read_source(content.found)
-        if isinstance(file, SourceFile) and digest(file.data) == content.digest:
-            yield content, file.text

@@ -22,6 +22,7 @@ from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.growth.inclusion import fixed_texts_added, occurs
 from recovery.survey.result_cache import key_of
+from recovery.survey.surveyed_files import SurveyedFile
 from support.files.decode import Decoded, decode, digest
 from support.files.discovery import Found, Skipped, discover, read
 from support.files.result_store import ResultStore
@@ -35,21 +36,6 @@ _SMALL = 32 << 20  # bytes times grammars; for less work one process is faster
 
 
 @dataclass(frozen=True, slots=True)
-class Content:
-    """A distinct content: its first location, and (path, origin) of that and of each copy."""
-
-    found: Found
-    places: tuple[tuple[str, str], ...]
-    digest: str
-    size: int
-
-    @property
-    def path(self) -> str:
-        """The path of the first location, as it is shown."""
-        return self.found.path
-
-
-@dataclass(frozen=True, slots=True)
 class Timeline:
     """Under which grammars the lines of a content fail.
 
@@ -57,7 +43,7 @@ class Timeline:
     grammar ``n``. ``reason`` says why the content is no KRL, and is empty if it is.
     """
 
-    content: Content
+    content: SurveyedFile
     failing: Mapping[int, int]
     reason: str = ""
 
@@ -78,7 +64,7 @@ class Timeline:
         return [line for line, when in self.failing.items() if when >> number & 1]
 
 
-def contents_of(roots: Sequence[Path]) -> tuple[list[Content], list[Skipped]]:
+def contents_of(roots: Sequence[Path]) -> tuple[list[SurveyedFile], list[Skipped]]:
     """Return the distinct contents below ``roots``, in the order of discovery, and those skipped.
 
     Raises `support.files.discovery.IngestError` if there is nothing to read.
@@ -92,12 +78,12 @@ def contents_of(roots: Sequence[Path]) -> tuple[list[Content], list[Skipped]]:
             continue
         entry = met.setdefault(digest(data), (candidate, [], len(data)))
         entry[1].append((candidate.path, candidate.origin))
-    contents = [Content(f, tuple(places), key, size) for key, (f, places, size) in met.items()]
+    contents = [SurveyedFile(f, tuple(places), key, size) for key, (f, places, size) in met.items()]
     return contents, [entry for entry in skipped if isinstance(entry, Skipped)]
 
 
 def read_through(
-    contents: Sequence[Content],
+    contents: Sequence[SurveyedFile],
     grammars: Sequence[Grammar],
     *,
     jobs: int | None = None,
@@ -183,11 +169,11 @@ class _Known:
         return {"grammars": [names[n] for n in read], "failing": failing}
 
 
-def _key(content: Content) -> str:
+def _key(content: SurveyedFile) -> str:
     return f"timeline {content.digest}"
 
 
-def _recalled(store: ResultStore, content: Content, names: Sequence[str]) -> _Known:
+def _recalled(store: ResultStore, content: SurveyedFile, names: Sequence[str]) -> _Known:
     """Return the cached result for these grammars; others in the cache are ignored."""
     kept = store.get_record(_key(content))
     if kept is None:
@@ -214,7 +200,7 @@ def _recalled(store: ResultStore, content: Content, names: Sequence[str]) -> _Kn
 @dataclass(frozen=True, slots=True)
 class _Member:
     index: int
-    content: Content
+    content: SurveyedFile
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,7 +217,7 @@ class _Block:
             yield self.missing[first : first + length]
 
 
-def _blocks(contents: Sequence[Content], known: Sequence[_Known]) -> Iterator[_Block]:
+def _blocks(contents: Sequence[SurveyedFile], known: Sequence[_Known]) -> Iterator[_Block]:
     """Yield blocks of contents to read; all contents of a block miss the same grammars."""
     waiting: dict[tuple[int, ...], list[_Member]] = defaultdict(list)
     sizes: dict[tuple[int, ...], int] = defaultdict(int)
@@ -251,7 +237,7 @@ _Result = dict[int, int] | str | Skipped
 
 
 def _read_under(
-    run: tuple[tuple[int, Grammar], ...], contents: tuple[Content, ...]
+    run: tuple[tuple[int, Grammar], ...], contents: tuple[SurveyedFile, ...]
 ) -> list[_Result]:
     """Return the results of contents under a run of grammars."""
     texts = [_text(content) for content in contents]
@@ -283,7 +269,7 @@ def _added(before: Recognizer, after: Recognizer) -> frozenset[str] | None:
     return fixed_texts_added(before.network, after.network, (before.grammar, after.grammar))
 
 
-def _text(content: Content) -> Decoded | str | Skipped:
+def _text(content: SurveyedFile) -> Decoded | str | Skipped:
     """Return the text of a content, or why it is no KRL, or why it cannot be read any more."""
     data = read(content.found)
     if isinstance(data, Skipped):

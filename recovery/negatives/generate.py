@@ -12,6 +12,7 @@ from __future__ import annotations
 import random
 from collections import defaultdict
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
+from functools import partial
 from itertools import cycle, islice, zip_longest
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
@@ -248,19 +249,14 @@ def _changed(program: list[str], site: tuple[int, SourceToken], new: str) -> lis
     return _replaced(program, number, f"{text[: token.start]}{new}{text[token.end :]}")
 
 
-def _without_needed(program: list[str], chance: random.Random) -> list[str] | None:
-    site = _site(program, chance, _NEEDED)
-    return site and _changed(program, site, "")
+def _without(wanted: Container[str] | None = None) -> _Mutation:
+    """Return the mutation that removes one of the wanted words, or any token."""
 
+    def without(program: list[str], chance: random.Random) -> list[str] | None:
+        site = _site(program, chance, wanted)
+        return site and _changed(program, site, "")
 
-def _without_bracket(program: list[str], chance: random.Random) -> list[str] | None:
-    site = _site(program, chance, _BRACKETS)
-    return site and _changed(program, site, "")
-
-
-def _without_token(program: list[str], chance: random.Random) -> list[str] | None:
-    site = _site(program, chance)
-    return site and _changed(program, site, "")
+    return without
 
 
 def _swapped_sign(program: list[str], chance: random.Random) -> list[str] | None:
@@ -286,14 +282,9 @@ def _second_equals(program: list[str], chance: random.Random) -> list[str] | Non
     return site and _changed(program, site, f"{chance.choice(('', 'COUNT '))}= {site[1].text}")
 
 
-def _inserted_sign(program: list[str], chance: random.Random) -> list[str] | None:
+def _inserted(some: Sequence[str], program: list[str], chance: random.Random) -> list[str] | None:
     site = _site(program, chance)
-    return site and _changed(program, site, f"{site[1].text} {chance.choice(_SIGNS)} ")
-
-
-def _inserted_word(program: list[str], chance: random.Random) -> list[str] | None:
-    site = _site(program, chance)
-    return site and _changed(program, site, f"{site[1].text} {chance.choice(_WORDS)} ")
+    return site and _changed(program, site, f"{site[1].text} {chance.choice(some)} ")
 
 
 def _tail(program: list[str], chance: random.Random) -> list[str] | None:
@@ -321,7 +312,7 @@ def _swapped_tokens(program: list[str], chance: random.Random) -> list[str] | No
 
 # Mutations that reveal most about a grammar are more frequent.
 _MUTATIONS: tuple[_Mutation, ...] = (
-    *[_without_needed] * 8,
+    *[_without(_NEEDED)] * 8,
     *[_other_module] * 3,
     _operand_as_parameter,
     *[_joined_lines, _other_closer, _stray_line, _swapped_sign, _second_equals, _tail] * 2,
@@ -331,12 +322,12 @@ _MUTATIONS: tuple[_Mutation, ...] = (
     _crossed_lines,
     _line_behind_end,
     _split_line,
-    _without_bracket,
+    _without(_BRACKETS),
     _other_bracket,
-    _without_token,
+    _without(),
     _doubled_token,
-    _inserted_sign,
-    _inserted_word,
+    partial(_inserted, _SIGNS),
+    partial(_inserted, _WORDS),
     _word_as_name,
     _swapped_tokens,
 )

@@ -33,19 +33,24 @@ class SurveyedFile:
     places: tuple[tuple[str, str], ...]
     digest: str
     size: int
-    failures: Sequence[FailingLine]
+    failures: Sequence[FailingLine] = ()
 
     @property
     def path(self) -> str:
         """The path of the first location, as it is shown."""
         return self.found.path
 
-    def lines(self) -> list[str]:
-        """Return the lines of the file, read again; empty if it has changed since the survey."""
+    def text(self) -> str | None:
+        """Return the text of the file, read again; ``None`` if it has changed since the survey."""
         file = read_source(self.found)
         if isinstance(file, Skipped) or digest(file.data) != self.digest:
-            return []
-        return source_lines(file.text)
+            return None
+        return file.text
+
+    def lines(self) -> list[str]:
+        """Return the lines of the file, read again; empty if it has changed since the survey."""
+        text = self.text()
+        return [] if text is None else source_lines(text)
 
 
 class _Failures(Sequence[FailingLine]):

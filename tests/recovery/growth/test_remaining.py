@@ -10,12 +10,13 @@ from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from recovery.growth import remaining as leftover
 from recovery.growth.remaining import ambiguous_lines, remaining
-from recovery.growth.timeline import Content, contents_of
+from recovery.growth.timeline import contents_of
+from recovery.survey.surveyed_files import SurveyedFile
 
 START = read_file(GRAMMAR.with_name("preliminary.g4"))
 
 
-def lay(root: Path, **files: str) -> list[Content]:
+def lay(root: Path, **files: str) -> list[SurveyedFile]:
     for name, text in files.items():
         (root / f"{name}.src").write_bytes(text.encode())
     return contents_of([root])[0]

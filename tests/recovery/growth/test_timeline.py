@@ -16,6 +16,7 @@ from grammar.parser.recognizer import Recognizer
 from recovery.growth import timeline
 from recovery.growth.timeline import Timeline, contents_of, read_through
 from recovery.survey.survey import survey
+from recovery.survey.surveyed_files import SurveyedFile
 
 START = read_file(GRAMMAR.with_name("preliminary.g4"))
 FILES = {
@@ -127,9 +128,7 @@ def test_only_what_is_new_is_read(
     asked: list[tuple[list[int], int]] = []
     perform = timeline._read_under
 
-    def watched(
-        run: tuple[tuple[int, Grammar], ...], contents: tuple[timeline.Content, ...]
-    ) -> Any:
+    def watched(run: tuple[tuple[int, Grammar], ...], contents: tuple[SurveyedFile, ...]) -> Any:
         asked.append(([number for number, _ in run], len(contents)))
         return perform(run, contents)
 
@@ -149,9 +148,7 @@ def test_a_growth_that_breaks_off_goes_on_with_the_next_grammar(
     asked: list[int] = []
     perform = timeline._read_under
 
-    def breaking(
-        run: tuple[tuple[int, Grammar], ...], contents: tuple[timeline.Content, ...]
-    ) -> Any:
+    def breaking(run: tuple[tuple[int, Grammar], ...], contents: tuple[SurveyedFile, ...]) -> Any:
         asked.extend(number for number, _ in run)
         if len(asked) == 3:
             raise KeyboardInterrupt
