@@ -44,11 +44,6 @@ SUSPECTED_ALONE = 6
 SUSPECTED_CHOICE = 2
 #: The least share of its uses on failing lines where it stands so. Revised: 0.02.
 SUSPECTED_SHARE = 0.8
-# `recovery.survey.unreserved_keywords`: when a name in files that parse is taken for a keyword.
-#: Files that read the name. Measured: the same with 1.
-UNRESERVED_FILES = 3
-#: Origins that read it, where there are several. Measured: the same with 1.
-UNRESERVED_ORIGINS = 2
 
 # -------------------------------------------------------------------- the profile of a grammar
 # `recovery.proposals.grammar_profile`, `collocations`, `similarity`, `recovery.forms.keywords`.
@@ -321,27 +316,29 @@ MOST_LISTED = 3
 MOST_EXAMPLES = 5
 
 # ----------------------------------------------------------------------------- growing a grammar
-# `recovery.induction`, `recovery.forms`.
+# `recovery.induction`, `recovery.forms`, `recovery.survey.unreserved_keywords`.
+
+#: So many are no coincidence: lines with a word, words that are followed alike, texts that begin
+#: alike, origins against one. Not measured.
+SEVERAL = 3
+#: Origins, where there are several, and files that have to show a keyword; origins that have to
+#: show what is new between the brackets of operands. Measured: with the second origin for brackets
+#: a split whose own sentences were rejected by 24 % comes to 7 %.
+SEVERAL_ORIGINS = 2
+SEVERAL_FILES = 3
 
 #: Different words up to which a context is one of keywords; where names may be too, fewer. Not
 #: measured.
 FEW_WORDS = 8
 FEWER_WORDS = 3
-#: Origins and files that a word needs which is to be a keyword. Not measured.
-INFERRED_ORIGINS = 2
-INFERRED_FILES = 3
 #: Files that it needs in a single origin, where there are others; and what else recurs in a
 #: single origin. Not measured.
 INFERRED_FILES_ALONE = 5
 LEAST_FILES_ALONE = 2
 #: The least share of its uses in such contexts, and of lines that have a quote in pairs; the share
-#: of files with uses as a name, and the lines with one, from which on it stays a name. Not
-#: measured.
+#: of files with uses as a name from which on it stays a name. Not measured.
 INFERRED_SHARE = 0.8
 NAME_SHARE = 0.02
-NAMED_LINES = 3
-#: Origins with a keyword by which a single one that has it as a name is outvoted. Not measured.
-OUTVOTING_ORIGINS = 3
 #: The least share of lines with a word ahead that others begin without it, by so many tokens. Not
 #: measured.
 PREFIX_SHARE = 0.6
@@ -349,9 +346,7 @@ PREFIX_TOKENS = 5
 #: Places that are remembered of a line, and given as evidence. Bound: for a reader.
 PLACES_REMEMBERED = 3
 PLACES_SHOWN = 10
-#: Different lines of a single file that an edit with a new word needs, and places without one.
-#: Not measured.
-LINES_OF_ONE_FILE = 3
+#: Places of a single file that an edit without a new word needs. Not measured.
 PLACES_IN_ONE_FILE = 2
 #: The least share of files in which a pair of words is in balance (damaged files are the others),
 #: their least number, and that of their origins. Revised: 0.95, less than what a corpus has with
@@ -373,9 +368,7 @@ BODY_PART = 20
 READ_TOGETHER_SHARE = 0.8
 #: Different signs and blanks in quotes from which on any character may be there. Not measured.
 QUOTED_SIGNS = 2
-#: Different texts in quotes from which on their common beginning is part of the token; how unlikely
-#: it is that digits would be missing by chance. Not measured.
-ALIKE_TEXTS = 3
+#: How unlikely it is that digits would be missing by chance. Not measured.
 UNLIKELY = 0.01
 #: Kinds of list from which on a first item may have a form of its own. Not measured.
 MANY_LISTS = 8
@@ -391,25 +384,17 @@ SHORT_LIST_EXAMPLES = 12
 ITEMS_BEHIND_THE_FIRST = 2
 #: Elements in a row that may be missing together. Not measured.
 MISSING_RUN = 3
-#: The part of the kinds of line of one word that another has too, for one form to read both. Not
-#: measured.
-ALIKE_SHARE = 0.5
-#: Words so alike from which on one form reads them all. Not measured.
-ALIKE_WORDS = 3
 #: How often a word stands behind the first word of a line, as a share of how often it begins one,
 #: from which on it is no statement of its own. Not measured.
 INNER_SHARE = 0.1
-#: What a level counts by which operators bind weaker than they need, in symbols. Not measured.
-LEVEL_SYMBOLS = 12
 #: Alternatives from which on a rule of words is the list of all of them. Not measured.
 WORD_LIST_ALTERNATIVES = 8
-#: What a rule counts that an edit no longer calls, in symbols. Not measured.
-LOST_RULE_SYMBOLS = 12
 #: Letters of a word from which on another that has them is taken to be derived. Not measured.
 LEAST_STEM = 3
-#: Symbols by which a grammar may become longer where what holds in one place holds in another
-#: too. Not measured.
-FOLDING_SYMBOLS = 12
+#: What a rule counts in symbols: one that an edit no longer calls, a level by which operators bind
+#: weaker than they need; and by how much a grammar may become longer where what holds in one place
+#: holds in another too. Not measured.
+RULE_SYMBOLS = 12
 #: Files with lines that an edit mends, for one program more that it accepts and should not.
 #: Revised: 100.
 GAIN_PER_NEGATIVE = 75
@@ -419,15 +404,9 @@ SYMBOL_FACTOR = 0.997
 UNBOUNDED_SYMBOLS = 3
 #: What a line counts that is read further and still fails. Not measured.
 ADVANCED_WORTH = 0.25
-#: The least share of what an edit does that no edit before it in the round has done. Not
-#: measured.
-FRESH_SHARE = 0.5
 #: Files of a single origin that an edit of an operand's rule needs, as operands are everywhere.
 #: Not measured.
 OPERAND_FILES = 5
-#: Origins that show what is new between the brackets of operands, where there are several.
-#: Measured: a split whose own sentences were rejected by 24 % comes to 7 %.
-BRACKET_ORIGINS = 2
 #: Grammars under which it is known how the files read: before steps, with all, with those kept.
 #: Bound on memory.
 GRAMMARS_KEPT = 3

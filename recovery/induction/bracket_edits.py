@@ -16,7 +16,7 @@ from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.operand_edits import OperandEdits
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms, optional
-from recovery.tuning import BRACKET_ORIGINS, MISSING_RUN
+from recovery.tuning import MISSING_RUN, SEVERAL_ORIGINS
 
 
 class BracketEdits:
@@ -63,7 +63,7 @@ class BracketEdits:
         """Edits for contents of brackets, with their breadth: parts left out, then new forms."""
         source_of = self.at.grammar.by_name[rule].source_of
         # operands are everywhere: one of several origins shows too little
-        least = BRACKET_ORIGINS if rule in self.at.rules.bracketed.values() else 1
+        least = SEVERAL_ORIGINS if rule in self.at.rules.bracketed.values() else 1
         for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
             for opening, start, end in bracket_pairs(alternative):
                 if opening != sign:

@@ -15,7 +15,7 @@ from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.language import CorpusFile
 from recovery.ledger.construct import Evidence
 from recovery.proposals.edit_site import LinePattern
-from recovery.tuning import LINES_OF_ONE_FILE, PLACES_IN_ONE_FILE, PLACES_REMEMBERED, PLACES_SHOWN
+from recovery.tuning import PLACES_IN_ONE_FILE, PLACES_REMEMBERED, PLACES_SHOWN, SEVERAL
 
 
 @dataclass(slots=True)
@@ -101,7 +101,7 @@ class FailingLines:
             if any(self._of_file[p] <= lines | known for line in some for p in line.files):
                 return True
         if any(isinstance(edit, AddToken) for edit in edits):
-            return len({text for line in some for text in line.texts}) >= LINES_OF_ONE_FILE
+            return len({text for line in some for text in line.texts}) >= SEVERAL
         return sum(len(line.seen) for line in some) >= PLACES_IN_ONE_FILE
 
     def _are_misnamed(self, lines: Set[int], recognizer: Recognizer) -> bool:

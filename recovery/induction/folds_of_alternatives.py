@@ -20,7 +20,7 @@ from recovery.forms.samples import samples_of
 from recovery.forms.symbols import Operand, Symbol
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import InferredStep
-from recovery.tuning import FOLDING_SYMBOLS, LEAST_STEM
+from recovery.tuning import LEAST_STEM, RULE_SYMBOLS
 
 
 def unused_rules(view: GrammarView) -> Iterator[InferredStep]:
@@ -73,7 +73,7 @@ def lists(view: GrammarView) -> Iterator[InferredStep]:
                 form = view.form(dict.fromkeys([*shapes, *more]))
                 edits = (Replace(rule, (number, 1), form, len(elements)),) if form else ()
                 title = f"a list behind {word} in {rule}"
-                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
+                yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS)
 
 
 def derived_words(view: GrammarView) -> Iterator[InferredStep]:
@@ -95,7 +95,7 @@ def derived_words(view: GrammarView) -> Iterator[InferredStep]:
             edits.append(Insert(rule, at, view.source(other, ending)))
         if edits:
             title = f"{word} goes on as {base} does"
-            yield InferredStep(title, tuple(edits), (), breadth=FOLDING_SYMBOLS)
+            yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS)
 
 
 def _folded(view: GrammarView, word: str, places: Sequence[tuple[str, int]]) -> tuple[Edit, ...]:

@@ -13,7 +13,7 @@ from recovery.forms.operand_rules import bracket_pairs
 from recovery.forms.samples import samples_of
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import InferredStep
-from recovery.tuning import FOLDING_SYMBOLS
+from recovery.tuning import RULE_SYMBOLS
 
 
 def tails(view: GrammarView) -> Iterator[InferredStep]:
@@ -43,7 +43,7 @@ def tails(view: GrammarView) -> Iterator[InferredStep]:
             if form and view.source(rule.name, tail) != form
         ]
         title = f"one form for what follows a name in {rule.name}"
-        yield InferredStep(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
+        yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS * len(edits))
 
 
 def brackets(view: GrammarView) -> Iterator[InferredStep]:
@@ -65,7 +65,7 @@ def brackets(view: GrammarView) -> Iterator[InferredStep]:
             )
             title = f"one form between {sign} and {BRACKETS[sign]} in {rule.name}"
             if form and len(contents) > 1:
-                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+                yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
 
 
 def modifiers(view: GrammarView) -> Iterator[InferredStep]:
@@ -83,7 +83,7 @@ def modifiers(view: GrammarView) -> Iterator[InferredStep]:
             edits = tuple(Insert(rule.name, (n, 1), f"{word}?") for n in plain)
             if len(having) > 1 and edits and word in view.grammar.by_name:
                 title = f"{word} ahead of other lines in {rule.name}"
-                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+                yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
 
 
 def undeclared(view: GrammarView) -> Iterator[InferredStep]:
@@ -106,7 +106,7 @@ def undeclared(view: GrammarView) -> Iterator[InferredStep]:
                     text = view.source(rule.name, [*between, kind])
                     edits = (Replace(rule.name, (number, 1), text, 1 + len(before)),)
                     title = f"{', '.join(words)} without {min(view.words(first))}"
-                    breadth = FOLDING_SYMBOLS + len(between)
+                    breadth = RULE_SYMBOLS + len(between)
                     yield InferredStep(f"{title} in {rule.name}", edits, (), breadth=breadth)
 
 

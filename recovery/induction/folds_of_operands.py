@@ -19,7 +19,7 @@ from grammar.notation.model import Alternative, Element, Group, Reference, Repea
 from recovery.induction.grammar_view import GrammarView, sign_of
 from recovery.induction.line_symbols import PREFIXES
 from recovery.induction.steps import InferredStep
-from recovery.tuning import FOLDING_SYMBOLS
+from recovery.tuning import RULE_SYMBOLS
 
 # Signs that may stand ahead of an operand, as rules write them.
 _PREFIXES = frozenset(f"'{sign}'" for sign in PREFIXES)
@@ -59,7 +59,7 @@ def trailing(view: GrammarView) -> Iterator[InferredStep]:
         if len(every) > 1 and edits and every not in done:
             done.add(every)
             title = f"{', '.join(sorted(every))} at the end of lines"
-            yield InferredStep(title, tuple(edits), (), breadth=FOLDING_SYMBOLS * len(edits))
+            yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS * len(edits))
 
 
 def signs(view: GrammarView) -> Iterator[InferredStep]:
@@ -90,7 +90,7 @@ def signs(view: GrammarView) -> Iterator[InferredStep]:
                 text = f"({' | '.join(sorted({sign, *more}))}){often}"
                 title = f"{', '.join(sorted(more))} ahead of operands in {name}"
                 edits = (Replace(name, (number, 1), text),)
-                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
+                yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS)
 
 
 def variables(view: GrammarView) -> Iterator[InferredStep]:
@@ -124,7 +124,7 @@ def variables(view: GrammarView) -> Iterator[InferredStep]:
             )
             if edits and called & reading:
                 title = f"variables beside values in {rule.name} {number}"
-                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS * len(edits))
+                yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
 
 
 def any_operands(view: GrammarView) -> Iterator[InferredStep]:
@@ -148,7 +148,7 @@ def any_operands(view: GrammarView) -> Iterator[InferredStep]:
                     ):
                         edits.append(Replace(rule.name, (*address, place), f"{widest}{often}"))
         title = f"any operand in {rule.name} in place of variables and values"
-        yield InferredStep(title, tuple(edits), (), breadth=FOLDING_SYMBOLS)
+        yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS)
 
 
 def _are_variables_and_values(view: GrammarView, alternatives: Sequence[Alternative]) -> bool:
@@ -183,7 +183,7 @@ def named_arguments(view: GrammarView) -> Iterator[InferredStep]:
                 text = f"({name} {sign} {view.rules.widest})?"
                 edits = (Insert(rule.name, (number, len(elements) + 1), text),)
                 title = f"an argument of any name in {rule.name} {number}"
-                yield InferredStep(title, edits, (), breadth=FOLDING_SYMBOLS)
+                yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS)
 
 
 def _is_beside(rule: Rule, address: Address, some: frozenset[str]) -> bool:

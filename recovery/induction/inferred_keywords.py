@@ -28,17 +28,15 @@ from recovery.survey.suspected_keywords import names_of_line
 from recovery.tuning import (
     FEW_WORDS,
     FEWER_WORDS,
-    INFERRED_FILES,
     INFERRED_FILES_ALONE,
-    INFERRED_ORIGINS,
     INFERRED_SHARE,
     LEAST_FILES_ALONE,
-    LINES_OF_ONE_FILE,
     NAME_SHARE,
-    NAMED_LINES,
-    OUTVOTING_ORIGINS,
     PREFIX_SHARE,
     PREFIX_TOKENS,
+    SEVERAL,
+    SEVERAL_FILES,
+    SEVERAL_ORIGINS,
 )
 
 # Signs behind a name that is called, indexed or has members.
@@ -115,7 +113,7 @@ def names_read(
         for upper in {w.upper() for w in words[1:] if lexer.kinds[w] == lexer.name_kind}:
             found[upper] += 1
             origins[upper] |= having
-    return {word: origins[word] for word, count in found.items() if count >= NAMED_LINES}
+    return {word: origins[word] for word, count in found.items() if count >= SEVERAL}
 
 
 class InferredKeywords:
@@ -130,7 +128,7 @@ class InferredKeywords:
         lexer: Lexer,
         read: Mapping[str, Collection[str]],
         types: Collection[str],
-        least: int = INFERRED_ORIGINS,
+        least: int = SEVERAL_ORIGINS,
         least_files: int = LEAST_FILES_ALONE,
     ) -> None:
         """``read`` are names in lines that the grammar reads, with the origins that use them so.
@@ -163,11 +161,10 @@ class InferredKeywords:
             word
             for word, uses in closed.items()
             if word not in type_names
-            if (len(uses.origins) >= INFERRED_ORIGINS and uses.files >= INFERRED_FILES)
+            if (len(uses.origins) >= SEVERAL_ORIGINS and uses.files >= SEVERAL_FILES)
             or uses.files >= alone
             or (least_files == 1 and every[word].operators == every[word].files)
-            if head[word].files >= INFERRED_FILES
-            or uses.files >= INFERRED_SHARE * every[word].files
+            if head[word].files >= SEVERAL_FILES or uses.files >= INFERRED_SHARE * every[word].files
         )
         # what a word behind a reserved one declares, as types do, ends there, or a sign goes on
         declaring = {
@@ -175,7 +172,7 @@ class InferredKeywords:
             for context, words in contexts.items()
             if context.is_of_types and context.ahead in lexer.kind_of
             for word, uses in words.items()
-            if len(uses.origins) >= INFERRED_ORIGINS and 2 * every[word].followed <= uses.files
+            if len(uses.origins) >= SEVERAL_ORIGINS and 2 * every[word].followed <= uses.files
         }
         declaring -= {word for c in self._closed if c.behind == _TYPE for word in contexts[c]}
 
@@ -185,9 +182,8 @@ class InferredKeywords:
                 return False
             # one origin that uses it as a name does not outvote several that do not, nor one line
             # those that the word begins
-            is_outvoted = (
-                len(closed[word].origins) >= OUTVOTING_ORIGINS
-                or head[word].files >= LINES_OF_ONE_FILE > 1 >= plain.files
+            is_outvoted = len(closed[word].origins) >= SEVERAL or (
+                head[word].files >= SEVERAL and plain.files <= 1
             )
             return len(plain.origins.union(read.get(word, ()))) > 1 or not is_outvoted
 

@@ -16,7 +16,7 @@ from recovery.induction.line_symbols import WORD, LineSymbols
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms, optional
 from recovery.proposals.edit_site import places_of
-from recovery.tuning import ALIKE_SHARE, ALIKE_WORDS
+from recovery.tuning import SEVERAL
 
 
 class LineEdits:
@@ -156,7 +156,7 @@ class LineEdits:
                     for h in heads
                     if go_on_alike(h[2], tails) and (h[0] in types) == (head in types)
                 ]
-                if len(alike) < ALIKE_WORDS:
+                if len(alike) < SEVERAL:
                     continue
                 every = tuple(n for _, ns, _ in alike for n in ns)
                 shapes = dict.fromkeys(
@@ -314,13 +314,11 @@ class LineEdits:
 
 
 def go_on_alike(some: Set[tuple[str, ...]], others: Set[tuple[str, ...]]) -> bool:
-    """Return whether two words are followed alike, by the kinds of what follows at line starts.
+    """Return whether two words are followed alike: half of the kinds of what follows are the same.
 
     Nothing is known about a word that always follows another one.
     """
-    return bool(some and others) and (
-        len(some & others) >= ALIKE_SHARE * min(len(some), len(others))
-    )
+    return bool(some and others) and (2 * len(some & others) >= min(len(some), len(others)))
 
 
 def _of(heads: Sequence[tuple[str, list[int], set[tuple[str, ...]]]]) -> list[str]:

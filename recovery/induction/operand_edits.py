@@ -25,7 +25,7 @@ from recovery.induction.line_symbols import PREFIXES, LineSymbols
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms
 from recovery.proposals.edit_site import configurations_of, places_of
-from recovery.tuning import LEVEL_SYMBOLS
+from recovery.tuning import RULE_SYMBOLS
 
 
 class OperandEdits:
@@ -61,7 +61,7 @@ class OperandEdits:
                 if all(self.at.opened(tokens, index) is None for tokens, index in at):
                     continue  # a word of one statement, as STEP is
             for edits, level in self._as_infix(text):
-                breadth = LEVEL_SYMBOLS * (len(self.at.rules.ladder) - level)
+                breadth = RULE_SYMBOLS * (len(self.at.rules.ladder) - level)
                 title = f"{text} between operands"
                 yield InferredStep(title, edits, tuple(members), breadth=breadth)
         for text, members in prefix.items():
@@ -216,7 +216,7 @@ class OperandEdits:
             for level in levels:
                 if level not in {rule, self.at.rules.names}:
                     edits = (AddAlternative(level, rule),)
-                    breadth = 0 if level == self._gathering else LEVEL_SYMBOLS
+                    breadth = 0 if level == self._gathering else RULE_SYMBOLS
                     yield InferredStep(
                         f"{rule} as an operand", edits, tuple(members), breadth=breadth
                     )

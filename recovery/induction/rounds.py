@@ -66,11 +66,10 @@ from recovery.tuning import (
     ADVANCED_WORTH,
     BLOCK_FILES,
     FOLD_FILES,
-    FRESH_SHARE,
-    INFERRED_FILES,
     LEAST_FILES_ALONE,
     OPERAND_FILES,
     PLACES_SHOWN,
+    SEVERAL_FILES,
     SYMBOL_FACTOR,
     UNBOUNDED_SYMBOLS,
 )
@@ -286,8 +285,8 @@ class Induction:
         changed: set[str] = set()
         reserved: set[Edit] = set()
         for gain, found, lines in scored:
-            if table.weight(lines - done) < FRESH_SHARE * table.weight(lines):
-                continue
+            if 2 * table.weight(lines - done) < table.weight(lines):
+                continue  # most of it has been done in this round
             evidence = table.evidence(lines)
             fixed = {e.rule for e in found.edits if isinstance(e, _Placed)}
             edits = tuple(e for e in found.edits if e not in reserved)
@@ -416,7 +415,7 @@ class Induction:
             if step and self.shown.gains(self.grammar, [step]):
                 self._tried.add(edit)  # else lines may still fail ahead of it: it is tried again
                 return step
-        enough = least[0], min(INFERRED_FILES, len(self.shown.files))
+        enough = least[0], min(SEVERAL_FILES, len(self.shown.files))
         for unknown in unknown_tokens(lines, recognizer.lexer, self.grammar.by_name):
             added: tuple[Edit, ...] = (AddRule(self.grammar.rules[-1].name, unknown.rule),)
             if unknown.is_value and (values := OperandRules(recognizer).values):

@@ -14,7 +14,7 @@ from recovery.forms.loose import is_loose
 from recovery.forms.symbols import UNKNOWN, Symbol, all_texts, operands_of
 from recovery.forms.writer import FormWriter
 from recovery.induction.line_symbols import WORD, LineSymbols
-from recovery.tuning import LOST_RULE_SYMBOLS, WORD_LIST_ALTERNATIVES
+from recovery.tuning import RULE_SYMBOLS, WORD_LIST_ALTERNATIVES
 
 
 class SupportedForms:
@@ -122,7 +122,7 @@ class SupportedForms:
         called = {
             e.name for o in old for e in walk(o) if isinstance(e, Reference) and not e.is_token
         }
-        return LOST_RULE_SYMBOLS * sum(
+        return RULE_SYMBOLS * sum(
             not any(self.at.rules.includes(other, name) for other in written)
             for name in called & self.at.rules.reaches.keys()
         )

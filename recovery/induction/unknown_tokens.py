@@ -13,7 +13,7 @@ from os.path import commonprefix
 from statistics import mean
 
 from grammar.parser.lexer import ERROR, Lexer
-from recovery.tuning import ALIKE_TEXTS, INFERRED_SHARE, QUOTED_SIGNS, UNLIKELY
+from recovery.tuning import INFERRED_SHARE, QUOTED_SIGNS, SEVERAL, UNLIKELY
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +142,7 @@ def _content(texts: Sequence[str], quote: str) -> str:
     chance are left out: a binary number has no 2.
     """
     several = set(texts)
-    begun = commonprefix([*several]) if len(several) >= ALIKE_TEXTS else ""  # noqa: RUF071 - texts
+    begun = commonprefix([*several]) if len(several) >= SEVERAL else ""  # noqa: RUF071 - texts
     rest = [text.removeprefix(begun) for text in texts]
     characters = "".join(rest)
     signs = sorted({c for c in characters if not (c.isascii() and c.isalnum())})

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from grammar.parser.lexer import Lexer
-from recovery.tuning import UNRESERVED_FILES, UNRESERVED_ORIGINS
+from recovery.tuning import SEVERAL_FILES, SEVERAL_ORIGINS
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,11 +90,11 @@ class UnreservedKeywords:
     def found(self) -> tuple[UnreservedKeyword, ...]:
         """Return the suspected keywords, the most widely used first; nothing can be added then."""
         self._move_to_disk()
-        needed = UNRESERVED_ORIGINS if len(self._origins) > 1 else 1
+        needed = SEVERAL_ORIGINS if len(self._origins) > 1 else 1
         rows = self._base.execute(
             "SELECT word, SUM(files), COUNT(*) FROM used GROUP BY word"
             f" HAVING MIN(origin) > {self.BOUND} AND SUM(files) >= ? AND COUNT(*) >= ?",
-            (UNRESERVED_FILES, needed),
+            (SEVERAL_FILES, needed),
         )
         found = [
             UnreservedKeyword(word.decode("utf-8", "surrogatepass"), files, origins)
