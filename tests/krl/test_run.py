@@ -657,7 +657,7 @@ def test_a_run_that_is_ended_keeps_its_trace(tmp_path: Path, number: signal.Sign
     begin = f"{heeds}; import sys; from krl.cli import main; sys.exit(main())"
     with subprocess.Popen([sys.executable, "-c", begin, *words], stderr=subprocess.PIPE) as run:
         assert run.stderr is not None
-        while not out.exists() or not [*out.iterdir()]:
+        while not (out.exists() and any(one.stat().st_size for one in out.iterdir())):
             assert run.poll() is None
             time.sleep(0.05)
         run.send_signal(number)
