@@ -4,51 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from interp.bytecode.program import Instruction, Program
+from interp.bytecode.program import Program
 from interp.bytecode.vm.state import OperandStack, Operation, State
+
+if TYPE_CHECKING:
+    from interp.bytecode.vm.services import Services
 
 #: Makes an operation from the site and the operands of an instruction.
 Rule = Callable[..., Operation]
-
-
-class Hooks(Protocol):
-    """The services of the machine that instructions need."""
-
-    #: Whether calls and returns are traced.
-    calls_are_traced: bool
-    returns_are_traced: bool
-    #: The operations that end an action, and the first routine of the program.
-    leave_action: Operation
-    finish: Operation
-
-    def line(self, place: int, after: Operation) -> Operation:
-        """Return the operation of a `LINE` instruction."""
-
-    def other_line(self, place: int, after: Operation) -> Operation:
-        """Return the operation of an `AT` instruction."""
-
-    def proceed(self, after: Operation) -> Operation:
-        """Return the operation of a `PROCEED` instruction."""
-
-    def ask(self, number: int, after: Operation) -> Operation:
-        """Return the operation of an `ASK` instruction."""
-
-    def builtin(self, number: int, after: Operation) -> Operation:
-        """Return the operation of a `BUILTIN` instruction."""
-
-    def charge(self, weight: int) -> None:
-        """Count a function; raise `interp.values.faults.BudgetExhausted`."""
-
-    def tell(self, instruction: Instruction, after: Operation) -> Operation:
-        """Return the operation of a trace instruction."""
-
-    def tell_call(self, code: int) -> None:
-        """Trace the call of a routine."""
-
-    def tell_leave(self) -> None:
-        """Trace the end of the current routine."""
 
 
 class Frame(Protocol):
@@ -88,7 +53,7 @@ class Runtime:
 
     program: Program
     state: State
-    hooks: Hooks
+    hooks: Services
     entries: list[Operation]
     frames: Sequence[int]
     owners: frozenset[int | None]

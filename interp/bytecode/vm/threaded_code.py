@@ -16,9 +16,10 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.program import Instruction, Program
 from interp.bytecode.vm.arithmetic import ArithmeticRules
 from interp.bytecode.vm.arrays import ArrayRules
-from interp.bytecode.vm.context import Hooks, Rule, Runtime, Site
+from interp.bytecode.vm.context import Rule, Runtime, Site
 from interp.bytecode.vm.control_flow import ControlRules
 from interp.bytecode.vm.data_movement import MovementRules
+from interp.bytecode.vm.services import Services
 from interp.bytecode.vm.state import Operation, State
 
 
@@ -28,7 +29,7 @@ class ThreadedCode:
     ``entries`` are their first operations, ``frames`` their frame sizes in cells.
     """
 
-    def __init__(self, program: Program, state: State, hooks: Hooks) -> None:
+    def __init__(self, program: Program, state: State, hooks: Services) -> None:
         self._program = program
         self._hooks = hooks
         self._bodies: dict[int, list[Operation]] = {}

@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from interp.robot.arm import ArmEvent
+    from interp.robot.arm import ArmEvent, Position
     from interp.robot.planning.planned_arm import PlannedArm
 
 
@@ -42,6 +42,10 @@ class DeferredArm:
     def pending(self) -> int:
         """0 as long as there was no motion."""
         return self._arm.pending() if self._is_made else 0
+
+    def target(self) -> Position:
+        """See `interp.robot.planning.planned_arm.PlannedArm.target`."""
+        return self._arm.target()
 
     def forget(self, time: int) -> None:
         """Forget the path before a time."""
