@@ -199,7 +199,7 @@ def call_mismatch(program: Program, builtin: Builtin) -> str | None:
 def may_be_missing(builtin: Builtin) -> Iterator[bool]:
     """Yield for each input of a predefined function whether it is a text that may be left out.
 
-    See `interp.values.builtins.reads_text`. Its twin in C is ``is_text_read``.
+    See `interp.values.builtins.reads_text`.
     """
     parameters = BUILTINS[builtin.name.upper()].parameters
     for place, part in enumerate(builtin.parts):
