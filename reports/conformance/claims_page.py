@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 from reports.conformance.claims_view import claims_view
-from reports.rendering.embedding import embedded_json
 from reports.rendering.page import render
 from support.files.atomic_write import write_atomic
 
@@ -20,9 +19,7 @@ def write_claims_page(records: Mapping[str, Mapping[str, Any]], folder: Path) ->
     """
     page = render(
         "claims.html.j2",
-        script="",
         styles=["page.css", "conform.css", "claims.css"],
-        data=embedded_json({}),
         view=claims_view(records),
     )
     return write_atomic(folder / "index.html", page)

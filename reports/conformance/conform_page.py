@@ -7,7 +7,7 @@ from typing import Any
 
 from reports.conformance.conform_view import VERDICTS, conform_view
 from reports.rendering.embedding import embedded_json
-from reports.rendering.page import render, source
+from reports.rendering.page import joined, render
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
 from reports.rendering.sanitizing import plain, shown, shown_texts
 from support.files.atomic_write import write_atomic
@@ -59,10 +59,9 @@ def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
     room = _MAX_DATA_CHARACTERS - len(embedded_json(shared)) - len(cases)
     listed = _listed(cases, _always, room) or _listed(cases, _is_not_fine, room)
     listed = listed or _listed(cases, _never, math.inf)
-    script = "\n".join(source(f"{name}.js") for name in _SCRIPTS)
     page = render(
         "conform.html.j2",
-        script=f'"use strict";\n{{\n{script}}}\n',
+        script=joined(_SCRIPTS),
         styles=["vendor/uPlot.min.css", "page.css", "conform.css"],
         data=embedded_json({**shared, "cases": listed}),
         view=conform_view(record),

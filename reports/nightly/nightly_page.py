@@ -11,7 +11,7 @@ from reports.nightly.nightly_failures import OF_THE_RUN, headline
 from reports.nightly.step_status import has_ended
 from reports.rendering.embedding import embedded_json
 from reports.rendering.number_format import Figure, counted, percent, share
-from reports.rendering.page import render, source
+from reports.rendering.page import joined, render
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
 from reports.rendering.sanitizing import plain, shown
 from support.files.atomic_write import write_atomic
@@ -116,10 +116,9 @@ def write_nightly_page(record: Mapping[str, Any], folder: Path) -> Path:
     """
     runs = records(record, "history")[-_MAX_RUNS:]
     data = embedded_json({"runs": [_short(run) for run in runs]})
-    scripts = "\n".join(source(f"{name}.js") for name in ("page", "nightly"))
     page = render(
         "nightly.html.j2",
-        script=f'"use strict";\n{{\n{scripts}}}\n',
+        script=joined(("page", "nightly")),
         styles=["page.css", "conform.css", "nightly.css"],
         data=data,
         view=_view(record, runs, folder.parent),

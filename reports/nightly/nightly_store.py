@@ -12,7 +12,7 @@ from shutil import rmtree
 
 from reports.nightly.nightly_page import MOST_EARLIER
 from reports.rendering.embedding import embedded_json
-from reports.rendering.page import render, source
+from reports.rendering.page import joined, render
 from support.files.atomic_write import write_atomic
 
 #: The files that are kept of a run whose pages are no longer linked, and the most runs kept.
@@ -25,7 +25,7 @@ def write_entry_page(out: Path, date: str, made: datetime) -> Path:
 
     Raises OSError.
     """
-    script = f'"use strict";\n{{\n{source("page.js")}\n{source("nightly-index.js")}}}\n'
+    script = joined(("page", "nightly-index"))
     data = embedded_json({"made": made.isoformat()})
     styles = ["page.css", "conform.css", "nightly.css"]
     page = render("nightly-index.html.j2", script=script, styles=styles, data=data, view=date)

@@ -6,7 +6,7 @@ from pathlib import Path
 from posixpath import commonpath
 from typing import Any
 
-from reports.rendering.embedding import embedded_json, printable
+from reports.rendering.embedding import printable
 from reports.rendering.number_format import percent, share
 from reports.rendering.page import render
 from support.files.atomic_write import write_atomic
@@ -53,13 +53,7 @@ def write_coverage_page(files: Sequence[CoveredFile], tests: int, folder: Path) 
         "figures": [_figure("statements", lines), _figure("branches", ways), _tests(tests)],
         "files": [_file(one, below) for one in sorted(files, key=lambda one: one.path)],
     }
-    page = render(
-        "coverage.html.j2",
-        script="",
-        styles=["page.css", "coverage.css"],
-        data=embedded_json({}),
-        view=view,
-    )
+    page = render("coverage.html.j2", styles=["page.css", "coverage.css"], view=view)
     return write_atomic(folder / "index.html", page)
 
 

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 from reports.programs.diff_view import diff_view
-from reports.rendering.embedding import embedded_json
 from reports.rendering.page import render
 from support.files.atomic_write import write_atomic
 
@@ -16,12 +15,6 @@ def write_diff_page(record: Mapping[str, Any], place: Path) -> Path:
     ``record`` is what ``krl diff --json`` writes; every field may be absent. The page is written
     atomically. Raises OSError if the folder cannot be made or written.
     """
-    page = render(
-        "diff.html.j2",
-        script="",
-        styles=["page.css", "diff.css"],
-        data=embedded_json({}),
-        view=diff_view(record),
-    )
+    page = render("diff.html.j2", styles=["page.css", "diff.css"], view=diff_view(record))
     is_file = place.suffix.lower() == ".html" and not place.is_dir()
     return write_atomic(place if is_file else place / "index.html", page)

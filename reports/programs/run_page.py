@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from reports.programs.run_view import run_view
 from reports.rendering.embedding import embedded_json
-from reports.rendering.page import render, source
+from reports.rendering.page import joined, render
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
 from reports.rendering.sanitizing import plain, shown, shown_texts
 from support.files.atomic_write import write_atomic
@@ -65,10 +65,9 @@ def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
         }
     )
     libraries = _LIBRARIES if view.has_path else _LIBRARIES[:1]
-    script = "\n".join(source(f"{name}.js") for name in (*libraries, *_SCRIPTS))
     page = render(
         "run.html.j2",
-        script=f'"use strict";\n{{\n{script}}}\n',
+        script=joined((*libraries, *_SCRIPTS)),
         styles=["vendor/uPlot.min.css", "page.css", "run.css"],
         data=data,
         view=view,

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from reports.rendering.embedding import embedded_json
 from reports.rendering.number_format import Figure, counted, percent, share
 from reports.rendering.page import render
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
@@ -59,13 +58,7 @@ def write_auto_page(record: Mapping[str, Any], folder: Path) -> Path:
     ``record`` is what ``krl recover --auto --json`` writes. The page is written atomically. Raises
     OSError if the folder cannot be made or written.
     """
-    page = render(
-        "auto.html.j2",
-        script="",
-        styles=["page.css", "auto.css"],
-        data=embedded_json({}),
-        view=_view(record),
-    )
+    page = render("auto.html.j2", styles=["page.css", "auto.css"], view=_view(record))
     return write_atomic(folder / "index.html", page)
 
 

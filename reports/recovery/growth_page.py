@@ -7,7 +7,7 @@ from typing import Any
 from reports.recovery.construct_data import construct_data
 from reports.recovery.growth_view import growth_view
 from reports.rendering.embedding import embedded_json
-from reports.rendering.page import render, source
+from reports.rendering.page import joined, render
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
 from reports.rendering.sanitizing import shown
 from support.files.atomic_write import write_atomic
@@ -44,10 +44,9 @@ def write_growth_page(record: Mapping[str, Any], folder: Path) -> Path:
             "steps": [_step(step) for step in steps],
         }
     )
-    script = "\n".join(source(f"{name}.js") for name in _SCRIPTS)
     page = render(
         "growth.html.j2",
-        script=f'"use strict";\n{{\n{script}}}\n',
+        script=joined(_SCRIPTS),
         styles=["vendor/uPlot.min.css", "page.css", "growth.css"],
         data=data,
         view=growth_view(record),

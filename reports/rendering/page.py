@@ -1,6 +1,6 @@
 """Rendering of a template into one self-contained file, for all pages."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib import resources
 from typing import Any
@@ -8,27 +8,35 @@ from typing import Any
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
-from reports.rendering.embedding import inline_source, script_hash
+from reports.rendering.embedding import embedded_json, inline_source, script_hash
 from reports.rendering.number_format import counted
 
 
-def render(template: str, *, script: str, styles: Sequence[str], data: Markup, view: Any) -> str:
-    """Return the page of a template with our ``script`` and style sheets inlined.
+def render(
+    template: str, *, view: Any, styles: Sequence[str], script: str = "", data: Markup | None = None
+) -> str:
+    """Return the page of a template with our style sheets and ``script`` inlined.
 
-    ``data`` is read by the script and made by `embedding.embedded_json`; ``view`` is the data of
-    the template. Untrusted text is escaped.
+    ``view`` is the data of the template; ``data`` is read by the script and made by
+    `embedding.embedded_json`. Untrusted text is escaped.
     """
     return (
         _environment()
         .get_template(template)
         .render(
             view=view,
-            data=data,
+            data=embedded_json({}) if data is None else data,
             style=inline_source("\n".join(map(source, styles))),
             script=inline_source(script),
             script_hash=script_hash(script),
         )
     )
+
+
+def joined(names: Iterable[str]) -> str:
+    """Return the scripts with these names, without their suffix, as one."""
+    scripts = "\n".join(source(f"{name}.js") for name in names)
+    return f'"use strict";\n{{\n{scripts}}}\n'
 
 
 @cache
