@@ -100,6 +100,7 @@ _SOURCES = """\
 | T37 | programming user-defined messages: scribd.com/document/617606976, openkuka.github.io/krl |
 | T38 | wenku.csdn.net/doc/jere816oec: dialogues, from KUKA's course Programming 3, KSS 8 |
 | T39 | m.elecfans.com/article/2081633 and 2078651: CREAD and its channels |
+| T40 | m.hlo-trade.com/info/4/114.html: loops and branches, from a text of KUKA College |
 | F1 to F4 | robot-forum.com on blending (14422), triggers (34556), axes (24428), REAL (35090) |
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
 | F6 | robot-forum.com on velocities in T1 (43227) |
