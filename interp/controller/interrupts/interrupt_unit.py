@@ -17,29 +17,22 @@ from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import ALWAYS, Answer, Blocked, Level, Task
 from interp.port.requests import BrakeArm, DeclareInterrupt, Request, Resume, SwitchInterrupt
 from interp.robot.api.commands import CallCommand
+from support.lazy_dataclass import dataclass
 
 #: The priority of PRIO=-1, for which the system may pick any of 40 to 80 [TRG-06].
 _SYSTEM: Final = 40
 
 
+@dataclass(slots=True, eq=False)
 class InterruptUnit:
     """Evaluates the conditions of interrupts, and enters the actions of interrupts and triggers."""
 
-    def __init__(
-        self,
-        state: ControllerState,
-        arm: ArmControl,
-        positions: Positions,
-        queue: MotionQueue,
-        advance: AdvanceRun,
-        levels: Levels,
-    ) -> None:
-        self._state = state
-        self._arm = arm
-        self._positions = positions
-        self._queue = queue
-        self._advance = advance
-        self._levels = levels
+    _state: ControllerState
+    _arm: ArmControl
+    _positions: Positions
+    _queue: MotionQueue
+    _advance: AdvanceRun
+    _levels: Levels
 
     # --------------------------------------------------------------- declaration and events
 

@@ -11,24 +11,18 @@ from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Task
 from interp.port.requests import EmptyError, Read, SwitchSignal, Write
 from interp.values.faults import fault
+from support.lazy_dataclass import dataclass
 
 
+@dataclass(slots=True, eq=False)
 class VariableAccess:
     """Answers requests to read and to write system variables."""
 
-    def __init__(
-        self,
-        state: ControllerState,
-        queue: MotionQueue,
-        advance: AdvanceRun,
-        automatic: AutomaticInputs,
-        errors: ErrorVariable,
-    ) -> None:
-        self._state = state
-        self._queue = queue
-        self._advance = advance
-        self._automatic = automatic
-        self._errors = errors
+    _state: ControllerState
+    _queue: MotionQueue
+    _advance: AdvanceRun
+    _automatic: AutomaticInputs
+    _errors: ErrorVariable
 
     def read(self, task: Task, request: Read) -> Answer:
         """Return the value of a variable. Raises `Fault`."""

@@ -31,6 +31,7 @@ from interp.port.requests import (
 )
 from interp.values.faults import BudgetExhausted
 from interp.values.json_form import to_json
+from support.lazy_dataclass import dataclass
 
 #: A program that has changed nothing for this time, in µs, may make only so many requests in a
 #: slice. So may that of the robot after `_ENDLESS` requests without a wait: it is in an endless
@@ -64,24 +65,16 @@ _ACTS: Final = (Invoke, Halt, Confirm, BrakeArm, Resume)
 _UNCOUNTED: Final = (Slice, StopAdvance)
 
 
+@dataclass(slots=True, eq=False)
 class Waits:
     """Answers waiting requests; notifies ``player`` of HALT and ``automatic`` of WAIT FOR."""
 
-    def __init__(
-        self,
-        state: ControllerState,
-        queue: MotionQueue,
-        advance: AdvanceRun,
-        panel: OperatorPanel,
-        player: ScriptPlayer,
-        automatic: AutomaticInputs,
-    ) -> None:
-        self._state = state
-        self._queue = queue
-        self._advance = advance
-        self._panel = panel
-        self._player = player
-        self._automatic = automatic
+    _state: ControllerState
+    _queue: MotionQueue
+    _advance: AdvanceRun
+    _panel: OperatorPanel
+    _player: ScriptPlayer
+    _automatic: AutomaticInputs
 
     # ------------------------------------------------------------------------------- time
 
