@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from grammar.comparison.content import CodeLine, Content, Datum, RoutineText
+from grammar.comparison.content import Content, RoutineText
 from grammar.comparison.matching import line_operations
 
 _NAME = re.compile(r'"[^"]*"|([$A-Z_][\w$]*)')
@@ -81,22 +81,14 @@ def renamed(content: Content, names: Mapping[str, str]) -> Content:
         return content
     data = {}
     for key, datum in content.data.items():
-        data[_in(key, names)] = _datum(datum, names)
+        data[_in(key, names)] = replace(datum, key=_in(datum.key, names))
     routines = tuple(_routine(routine, names) for routine in content.routines)
     return Content(content.path, routines, data)
 
 
 def _routine(routine: RoutineText, names: Mapping[str, str]) -> RoutineText:
-    body = tuple(_line(line, names) for line in routine.body)
+    body = tuple(replace(line, key=_in(line.key, names)) for line in routine.body)
     return replace(routine, signature=_in(routine.signature, names), body=body)
-
-
-def _line(line: CodeLine, names: Mapping[str, str]) -> CodeLine:
-    return replace(line, key=_in(line.key, names))
-
-
-def _datum(datum: Datum, names: Mapping[str, str]) -> Datum:
-    return replace(datum, key=_in(datum.key, names))
 
 
 def _in(key: str, names: Mapping[str, str]) -> str:

@@ -35,7 +35,7 @@ def _ranked(name: str, names: Iterable[str]) -> list[tuple[int, int, str]]:
         if abs(len(candidate) - len(wanted)) > slips:
             continue
         key = candidate.upper()
-        distance = _distance(wanted, key, slips)
+        distance = edit_distance(wanted, key, slips)
         if 0 < distance <= slips and distance < len(wanted):
             found.append((distance, -_common_start(wanted, key), candidate))
     return sorted(found)
@@ -61,7 +61,7 @@ def _common_start(one: str, other: str) -> int:
     return next((i for i, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), len(one))
 
 
-def _distance(one: str, other: str, most: int) -> int:
+def edit_distance(one: str, other: str, most: int) -> int:
     """Return the edit distance of two names, or ``most + 1`` if it is greater than ``most``.
 
     Optimal string alignment, computed in a band of width ``most`` around the diagonal.

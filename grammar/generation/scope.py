@@ -98,7 +98,7 @@ class Scope:
     #: Caches of `places` and `arrays`, cleared when a variable is added.
     _places: dict[tuple[Type, bool, bool, bool, bool], Places] = field(default_factory=dict)
     _arrays: dict[tuple[Type, int, bool], list[Place]] = field(default_factory=dict)
-    _signals: dict[tuple[Type, bool], list[str]] = field(default_factory=dict)
+    _signals: dict[bool, list[str]] = field(default_factory=dict)
     _callable: dict[Type | None, list[Routine]] = field(default_factory=dict)
 
     def inner(self) -> Scope:
@@ -191,14 +191,13 @@ class Scope:
             ]
         return found
 
-    def signals(self, type_: Type = BOOL, *, is_output: bool) -> list[str]:
-        """Return the names of the signals of a type."""
-        key = (type_, is_output)
-        found = self._signals.get(key)
+    def signals(self, *, is_output: bool) -> list[str]:
+        """Return the names of the signals that are inputs or outputs of one bit."""
+        found = self._signals.get(is_output)
         if found is None:
-            found = self._signals[key] = [
+            found = self._signals[is_output] = [
                 one.name
-                for one in self.places(type_, is_written=is_output).whole
+                for one in self.places(BOOL, is_written=is_output).whole
                 if one.is_signal and one.is_writable is is_output
             ]
         return found

@@ -11,7 +11,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypedDict
 
-from grammar.notation.model import Grammar
 from recovery.growth.growth import LedgerSteps
 from recovery.growth.timeline import Timeline, read_through
 from recovery.ledger.construct_record import construct_record
@@ -65,12 +64,11 @@ def answered(
             answers.add(number)
     return {
         "clusters": answered_clusters,
-        "constructs": [_record(grammars, steps, number) for number in sorted(answers)],
+        "constructs": [
+            construct_record(steps[number - 1][0], grammars[number - 1], grammars[number])
+            for number in sorted(answers)
+        ],
     }
-
-
-def _record(grammars: Sequence[Grammar], steps: LedgerSteps, number: int) -> ConstructRecord:
-    return construct_record(steps[number - 1][0], grammars[number - 1], grammars[number])
 
 
 def _lines(cluster: ClusterRecord) -> list[tuple[str, int]]:

@@ -10,23 +10,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from grammar.notation.model import Grammar, Literal, Rule
-from grammar.parser.network import Network
+from grammar.parser.recognizer import Recognizer
 from grammar.parser.rule_automaton import RuleAutomaton
 
 
-def fixed_texts_added(
-    old: Network, new: Network, grammars: tuple[Grammar, Grammar]
-) -> frozenset[str] | None:
-    """Return the texts of new tokens, in upper case, if ``new`` only adds to ``old``.
+def fixed_texts_added(old: Recognizer, new: Recognizer) -> frozenset[str] | None:
+    """Return the texts of new tokens, in upper case, if the new grammar only adds to the old one.
 
     A program of ``old`` in which none of them `occurs` is one of ``new``. Returns ``None`` if that
-    could not be proved. ``grammars`` are those of the networks.
+    could not be proved.
     """
-    before, after = grammars
+    before, after = old.grammar, new.grammar
     if before.start != after.start or before.options != after.options:
         return None
-    for name, automaton in old.automata.items():
-        wider = new.automata.get(name)
+    for name, automaton in old.network.automata.items():
+        wider = new.network.automata.get(name)
         if wider is None or not _includes(wider, automaton):
             return None
     return _tokens_added(before, after)

@@ -249,7 +249,7 @@ def _read_under(
     for number, grammar in run:
         recognizer = Recognizer(grammar)
         finder = FailureFinder(recognizer)
-        added = None if before is None else _added(before, recognizer)
+        added = None if before is None else fixed_texts_added(before, recognizer)
         for place, text in programs.items():
             if place in parsed and added is not None and not occurs(added, folded[place]):
                 continue
@@ -263,10 +263,6 @@ def _read_under(
                 failing[line] = failing.get(line, 0) | 1 << number
         before = recognizer
     return results
-
-
-def _added(before: Recognizer, after: Recognizer) -> frozenset[str] | None:
-    return fixed_texts_added(before.network, after.network, (before.grammar, after.grammar))
 
 
 def _text(content: SurveyedFile) -> Decoded | str | Skipped:

@@ -37,6 +37,7 @@ class InducedLedger:
         """Take in a round; returns its constructs, which say only what is new in the grammar."""
         before = self.grammar
         added = [self._construct(step) for step in done.taken]
+        refused = list({(one.title, one.reason): one for one in done.refused}.values())
         self.rounds.append(
             {
                 "shown": asdict(done.shown),
@@ -54,7 +55,7 @@ class InducedLedger:
                     }
                     for step, construct in zip(done.taken, added, strict=True)
                 ],
-                "refused": [_refused(before, r) for r in _distinct(done.refused)[:_MOST_REFUSED]],
+                "refused": [_refused(before, one) for one in refused[:_MOST_REFUSED]],
             }
         )
         return added
@@ -155,7 +156,3 @@ def _refused(grammar: Grammar, refused: RefusedStep) -> dict[str, Any]:
         "gain": round(refused.gain, 1),
         "reason": refused.reason,
     }
-
-
-def _distinct(refused: Iterable[RefusedStep]) -> list[RefusedStep]:
-    return list({(r.title, r.reason): r for r in refused}.values())

@@ -70,6 +70,7 @@ from recovery.tuning import (
     OPERAND_FILES,
     PLACES_SHOWN,
     SEVERAL_FILES,
+    SEVERAL_ORIGINS,
     SYMBOL_FACTOR,
     UNBOUNDED_SYMBOLS,
 )
@@ -95,14 +96,12 @@ class Induction:
         negatives: NegativeSet,
         *,
         language: Language | None = None,
-        origins: int = 2,
         struck: Collection[tuple[Edit, ...]] = (),
         start: Grammar | None = None,
     ) -> None:
-        """``origins`` have to show an edit, while any does; ``struck`` edits are not taken.
+        """``struck`` edits are not taken; ``language`` is that of the ``negatives``.
 
-        ``language`` is that of the ``negatives``. ``start`` is the grammar before the first round,
-        if ``grammar`` is one that has grown.
+        ``start`` is the grammar before the first round, if ``grammar`` is one that has grown.
         """
         self.struck = frozenset(struck)
         self.grammar = grammar
@@ -111,7 +110,7 @@ class Induction:
         self.held = held
         self.negatives = negatives
         self._reserved_in = (language or Language()).reserved_in
-        self.least_origins = min(origins, len({o for f in shown for o in f.origins}))
+        self.least_origins = min(SEVERAL_ORIGINS, len({o for f in shown for o in f.origins}))
         self.is_finished = False
         self._corpus: CorpusLines | None = None
         self._keywords: InferredKeywords | None = None
@@ -216,8 +215,12 @@ class Induction:
                 breadth += sum(map(at.profile.width, rules))
                 scored.append((gain * SYMBOL_FACTOR**breadth, found, mended))
         scored.sort(key=lambda s: (-s[0], str(s[1].edits)))
-        grown = [lines for _, found, lines in scored if not _adds_form(found.edits)]
-        explained = {table.patterns[n] for lines in grown for n in lines}
+        explained = {
+            table.patterns[n]
+            for _, found, lines in scored
+            if not any(isinstance(edit, AddAlternative) for edit in found.edits)
+            for n in lines
+        }
         explained |= self._explained  # of the round before, under the same grammar
         self._explained = explained if inner else set()
         taken, refused = self._chosen(scored, table, review, least, explained)
@@ -473,11 +476,6 @@ def _size(edit: Edit) -> int:
     """Return the number of symbols that an edit writes; an unbounded part counts four times."""
     text = getattr(edit, "text", "")
     return len(text.split()) + UNBOUNDED_SYMBOLS * len(re.findall(r"[)\w][*+]", text))
-
-
-def _adds_form(edits: Sequence[Edit]) -> bool:
-    """Return whether edits add a form, instead of extending one."""
-    return any(isinstance(edit, AddAlternative) for edit in edits)
 
 
 def _led_by(word: str, failures: Sequence[Failure]) -> int:

@@ -76,7 +76,8 @@ class Corpora:
         self._own = own
         self._cache = cache
         self._jobs = jobs
-        made = generate(list(_texts(own)), count=generated, seed=_SEED)
+        texts = [file.text for file in source_files([own])] if own else []
+        made = generate(texts, count=generated, seed=_SEED)
         self._negatives = NegativeSet((*negatives, *made))
 
     def measure(self, grammar: Grammar) -> GrammarMeasurement:
@@ -100,7 +101,3 @@ class Corpora:
 
     def _survey(self, roots: Sequence[Path], grammar: Grammar) -> Survey | None:
         return survey(roots, grammar, jobs=self._jobs, cache=self._cache) if roots else None
-
-
-def _texts(folder: Path | None) -> Iterator[str]:
-    return (file.text for file in source_files([folder])) if folder else iter(())

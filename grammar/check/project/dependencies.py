@@ -17,6 +17,7 @@ from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache
 
+from grammar.notation.model import reached
 from grammar.semantics.link import Project, words_of
 from grammar.semantics.symbols import Kind, ModuleTable
 from support.lazy_dataclass import dataclass
@@ -86,7 +87,11 @@ def needs_of(project: Project, contributions: Sequence[Contribution | None]) -> 
             facts.setdefault(name, []).append(fact)
             paths.setdefault(name, []).append(given.path)
     digests = {name: _digest((*paths[name], *some)) for name, some in facts.items()}
-    reach = _reach({name: _mentioned(some, facts) - {name} for name, some in facts.items()})
+    mentioned = {
+        name: facts.keys() & frozenset[str]().union(*map(words_of, some))
+        for name, some in facts.items()
+    }
+    reach = {name: reached(mentioned, name) | {name} for name in facts}
     whole = _whole(project)
     names = _digest(sorted(_suggested(project)))
     for one in contributions:
@@ -118,31 +123,6 @@ def _suggested(project: Project) -> Iterator[str]:
         if module.table is not None:
             for space, symbol in module.table.table.symbols():
                 yield f"{module.path} {space.name} {symbol.access.name} {symbol.name}"
-
-
-def _mentioned(facts: Iterable[str], known: Mapping[str, object]) -> set[str]:
-    return {word for fact in facts for word in words_of(fact) if word in known}
-
-
-def _reach(edges: Mapping[str, set[str]]) -> dict[str, frozenset[str]]:
-    """For each name all that can be reached from it, itself included."""
-    reach: dict[str, frozenset[str]] = {}
-    for start, mentioned in edges.items():
-        if not mentioned:
-            reach[start] = frozenset((start,))
-    for start in edges:
-        if start in reach:
-            continue
-        found, todo = {start}, [start]
-        while todo:
-            for name in edges[todo.pop()] - found:
-                if name in reach:
-                    found |= reach[name]
-                else:
-                    found.add(name)
-                    todo.append(name)
-        reach[start] = frozenset(found)
-    return reach
 
 
 def _digest(lines: Iterable[str]) -> str:

@@ -10,7 +10,7 @@ from functools import cache
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, OUTERMOST
 from grammar.diagnostics.diagnostic import Fix
-from grammar.diagnostics.did_you_mean import nearest
+from grammar.diagnostics.did_you_mean import edit_distance, nearest
 from grammar.diagnostics.open_blocks import lead
 from grammar.diagnostics.syntax_errors.error_site import ErrorSite, Mistake
 from grammar.parser.tree import Tree
@@ -36,7 +36,7 @@ def misspelt_keyword(site: ErrorSite) -> Mistake | None:
         if len(word) < shortest or not word.isidentifier() or word in _keywords():
             continue
         for meant in dict.fromkeys((closer, *nearest(word, _keywords()))):
-            if is_one_slip(word, meant) and _reads(site, meant, place, place + 1):
+            if edit_distance(word, meant, 1) == 1 and _reads(site, meant, place, place + 1):
                 wrong, region = site.tokens[place][0], site.region(place)
                 fix = Fix(f"did you mean {meant}?", region, meant)
                 return Mistake(f"{wrong} is not a word of KRL", fix, region=region)
@@ -88,21 +88,6 @@ def _missing(site: ErrorSite, sign: str, place: int) -> Mistake:
     text = sign if sign in _CLOSE else f" {sign} "
     fix = Fix(f"write {sign} before {site.tokens[place][0]}", gap, text)
     return Mistake(message, fix, region=gap)
-
-
-def is_one_slip(word: str, meant: str) -> bool:
-    """Return whether two words differ by one letter (changed, added or missing) or by a swap."""
-    if abs(len(word) - len(meant)) > 1:
-        return False
-    if len(word) != len(meant):
-        longer, shorter = (word, meant) if len(word) > len(meant) else (meant, word)
-        return any(longer[:i] + longer[i + 1 :] == shorter for i in range(len(longer)))
-    wrong = [i for i, (a, b) in enumerate(zip(word, meant, strict=True)) if a != b]
-    if len(wrong) == 1:
-        return True
-    return len(wrong) == 2 and sorted(word[wrong[0] : wrong[1] + 1]) == sorted(
-        meant[wrong[0] : wrong[1] + 1]
-    )
 
 
 @cache
