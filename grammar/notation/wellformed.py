@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from graphlib import CycleError, TopologicalSorter
 
 from grammar.notation.model import (
     Alternative,
@@ -102,15 +103,14 @@ def _misuses(grammar: Grammar) -> Iterator[str]:
 
 def _too_deep(grammar: Grammar) -> str | None:
     """Return the name of a lexer rule that is nested too deeply, or ``None``."""
-    left = {rule.name: rule for rule in grammar.rules if rule.is_lexer}
-    refers = {n: {r for a in rule.alternatives for r in _referred(a)} for n, rule in left.items()}
+    tokens = [rule for rule in grammar.rules if rule.is_lexer]
+    refers = {rule.name: {n for a in rule.alternatives for n in _referred(a)} for rule in tokens}
     depths: dict[str, int] = {}
-    while left:
-        for name in [name for name in left if not refers[name] & left.keys()]:
-            brackets = max(map(_brackets, left.pop(name).alternatives))
-            depths[name] = 1 + brackets + max(map(depths.__getitem__, refers[name]), default=0)
-            if depths[name] > _MOST_NESTED:
-                return name
+    for name in TopologicalSorter(refers).static_order():
+        brackets = max(map(_brackets, grammar.by_name[name].alternatives))
+        depths[name] = 1 + brackets + max(map(depths.__getitem__, refers[name]), default=0)
+        if depths[name] > _MOST_NESTED:
+            return name
     return None
 
 
@@ -214,21 +214,13 @@ def _left_recursion(grammar: Grammar, lengths: Mapping[str, float]) -> list[str]
 
 
 def _cycle(edges: Mapping[str, set[str]]) -> list[str] | None:
-    """Return a cycle in the graph ``edges``, the first name repeated at its end, or ``None``."""
-    done: set[str] = set()
-    for root, first in edges.items():
-        path = [root]
-        stack: list[Iterator[str]] = [iter(first)]
-        while stack:
-            step = next((n for n in stack[-1] if n in edges and n not in done), None)
-            if step is None:
-                stack.pop()
-                done.add(path.pop())
-            elif step in path:
-                return [*path[path.index(step) :], step]
-            else:
-                path.append(step)
-                stack.append(iter(edges[step]))
+    """Return a cycle in the graph ``edges``, its first name repeated at its end, or ``None``."""
+    try:
+        TopologicalSorter(edges).prepare()
+    except CycleError as error:
+        cycle: list[str] = error.args[1][:0:-1]
+        first = cycle.index(min(cycle, key=list(edges).index))
+        return [*cycle[first:], *cycle[: first + 1]]
     return None
 
 
