@@ -49,15 +49,18 @@ class WordRecord(TypedDict):
     origins: int
 
 
-class FailureRecord(TypedDict):
-    """A failing line."""
-
+class _FailingLine(TypedDict):
     path: str
     line: int
     column: int
     token: str
-    kind: str
     text: str
+
+
+class FailureRecord(_FailingLine):
+    """A failing line."""
+
+    kind: str
     expected: list[str]
     rule: str
     cluster: str
@@ -71,14 +74,9 @@ class LineRecord(TypedDict):
     text: str
 
 
-class ExampleRecord(TypedDict):
+class ExampleRecord(_FailingLine):
     """A failing line with the lines around it."""
 
-    path: str
-    line: int
-    column: int
-    token: str
-    text: str
     context: list[LineRecord]
 
 
@@ -240,14 +238,9 @@ class AmbiguousRecord(TypedDict):
     examples: list[AmbiguousLineRecord]
 
 
-class RemainingLineRecord(TypedDict):
+class RemainingLineRecord(_FailingLine):
     """A line that fails at the end of the growth."""
 
-    path: str
-    line: int
-    column: int
-    token: str
-    text: str
     follows: bool
 
 
