@@ -389,11 +389,8 @@ MISSING_RUN = 3
 INNER_SHARE = 0.1
 #: Alternatives from which on a rule of words is the list of all of them. Not measured.
 WORD_LIST_ALTERNATIVES = 8
-#: Letters of a word from which on another that has them is taken to be derived. Not measured.
-LEAST_STEM = 3
-#: What a rule counts in symbols: one that an edit no longer calls, a level by which operators bind
-#: weaker than they need; and by how much a grammar may become longer where what holds in one place
-#: holds in another too. Not measured.
+#: What a level counts by which operators bind weaker than they need, in symbols, and by how many a
+#: grammar may become longer where what holds in one place holds in another too. Not measured.
 RULE_SYMBOLS = 12
 #: Files with lines that an edit mends, for one program more that it accepts and should not.
 #: Revised: 100.

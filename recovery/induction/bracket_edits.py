@@ -54,13 +54,13 @@ class BracketEdits:
         for (rule, sign), contents in found.items():
             members = tuple(dict.fromkeys(n for numbers in contents.values() for n in numbers))
             title = f"between {sign} and {BRACKETS[sign]} of {rule}"
-            for edits, lost in self._between(rule, sign, contents):
-                yield InferredStep(title, edits, members, breadth=lost)
+            for edits in self._between(rule, sign, contents):
+                yield InferredStep(title, edits, members)
 
     def _between(
         self, rule: str, sign: str, contents: dict[tuple[Symbol, ...], list[int]]
-    ) -> Iterator[tuple[tuple[Edit, ...], int]]:
-        """Edits for contents of brackets, with their breadth: parts left out, then new forms."""
+    ) -> Iterator[tuple[Edit, ...]]:
+        """Edits for contents of brackets: parts left out, then new forms."""
         source_of = self.at.grammar.by_name[rule].source_of
         # operands are everywhere: one of several origins shows too little
         least = SEVERAL_ORIGINS if rule in self.at.rules.bracketed.values() else 1
@@ -71,19 +71,19 @@ class BracketEdits:
                 old = alternative.elements[start + 1 : end]
                 for first, count in _runs(len(old)):
                     text = optional(" ".join(map(source_of, old[first : first + count])))
-                    yield (Replace(rule, (number, start + 2 + first), text, count),), 0
+                    yield (Replace(rule, (number, start + 2 + first), text, count),)
                 yield from self._of_items(old, contents, least)
                 for text in self.forms.of(contents, samples_of(self.at.rules, old), least):
                     at, count = (number, start + 2), len(old)
                     edit = Replace(rule, at, text, count) if count else Insert(rule, at, text)
-                    yield (*self.forms.reserving(text), edit), self.forms.lost(old, text)
+                    yield (*self.forms.reserving(text), edit)
 
     def _of_items(
         self,
         old: Sequence[Element],
         contents: dict[tuple[Symbol, ...], list[int]],
         least: int,
-    ) -> Iterator[tuple[tuple[Edit, ...], int]]:
+    ) -> Iterator[tuple[Edit, ...]]:
         """Edits of the rule that reads the items of a list and nothing else."""
         called = {e.name for o in old for e in walk(o) if isinstance(e, Reference)}
         for name in sorted(called & self.at.rules.reaches.keys()):
@@ -97,7 +97,7 @@ class BracketEdits:
             known = samples_of(self.at.rules, first.elements)
             for text in self.forms.of(items, known, least) if items else ():
                 edit = Replace(name, (1, 1), text, len(first.elements))
-                yield (*self.forms.reserving(text), edit), self.forms.lost(first.elements, text)
+                yield (*self.forms.reserving(text), edit)
 
 
 def _groups(symbols: Sequence[Symbol]) -> Iterator[tuple[str, tuple[Symbol, ...]]]:

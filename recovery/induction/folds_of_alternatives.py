@@ -20,7 +20,7 @@ from recovery.forms.samples import samples_of
 from recovery.forms.symbols import Operand, Symbol
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import InferredStep
-from recovery.tuning import LEAST_STEM, RULE_SYMBOLS
+from recovery.tuning import RULE_SYMBOLS
 
 
 def unused_rules(view: GrammarView) -> Iterator[InferredStep]:
@@ -83,7 +83,7 @@ def derived_words(view: GrammarView) -> Iterator[InferredStep]:
     for (rule, word, number), (other, base, place) in pairs:
         own, wide = view.line(rule, number), view.line(other, place)
         narrow, operand = own[1], wide[1]
-        if len(base) < LEAST_STEM or not isinstance(operand, Reference):
+        if not isinstance(operand, Reference):
             continue
         edits: list[Edit] = []
         is_narrower = isinstance(narrow, Reference) and narrow.name != operand.name

@@ -268,9 +268,7 @@ class LineEdits:
             alike, old = self._one_choice(rule, first, shapes)
             for text in self.forms.of(alike, old):
                 edits = (*self.forms.reserving(text), Replace(rule, place, text, len(first)))
-                yield InferredStep(
-                    title, edits, tuple(members), breadth=self.forms.lost(first, text)
-                )
+                yield InferredStep(title, edits, tuple(members))
 
     def _one_choice(
         self, rule: str, first: Sequence[Element], shapes: dict[tuple[Symbol, ...], list[int]]

@@ -8,13 +8,12 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
-from grammar.notation.model import Element, Reference, walk
 from recovery.brackets import CLOSING
 from recovery.forms.loose import is_loose
 from recovery.forms.symbols import UNKNOWN, Symbol, all_texts, operands_of
 from recovery.forms.writer import FormWriter
 from recovery.induction.line_symbols import WORD, LineSymbols
-from recovery.tuning import RULE_SYMBOLS, WORD_LIST_ALTERNATIVES
+from recovery.tuning import WORD_LIST_ALTERNATIVES
 
 
 class SupportedForms:
@@ -115,17 +114,6 @@ class SupportedForms:
         ]
         entered = (AddAlternative(rule, word) for word in words for rule in lists)
         return (*map(AddToken, words), *entered)
-
-    def lost(self, old: Sequence[Element], text: str) -> int:
-        """Return the cost of a text for rules that the old elements call and it does not."""
-        written = set(re.findall(r"\w+", text))
-        called = {
-            e.name for o in old for e in walk(o) if isinstance(e, Reference) and not e.is_token
-        }
-        return RULE_SYMBOLS * sum(
-            not any(self.at.rules.includes(other, name) for other in written)
-            for name in called & self.at.rules.reaches.keys()
-        )
 
 
 def optional(text: str) -> str:
