@@ -151,7 +151,10 @@ class Debugger(Inspection):
 
     @property
     def places(self) -> Breaks:
-        """The breakpoints that the debugger wants to see, even where `unseen` allows more."""
+        """The breakpoints that the debugger wants to see, even where `unseen` allows more.
+
+        The object stays the same as long as its content does.
+        """
         history = self._history
         is_idle = history.is_repeating and not history.is_looking(self._begun_count())
         return _NOWHERE if is_idle else self.breakpoints.places

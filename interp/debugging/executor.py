@@ -7,7 +7,7 @@ debugger.
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import TYPE_CHECKING
 
 from interp.controller.state.trace import TaskName
 from interp.port.events import Sink
@@ -16,37 +16,14 @@ from interp.port.inspection import Breaks, Inspectable
 from interp.port.requests import At, CodeHandle, End, Fail, Request, Slice, StopAdvance, Value
 from interp.values.faults import Fault
 
-
-class Hook(Protocol):
-    """The debugger, as a debugged executor calls it."""
-
-    @property
-    def places(self) -> Breaks:
-        """The breakpoints whose statements must be shown if their conditions hold.
-
-        The object stays the same as long as its content does.
-        """
-
-    def unseen(self, shows_places: bool) -> int:
-        """Return how many statements may begin before one must be shown.
-
-        Statements at `places` do not count with ``shows_places``; without it they count too.
-        """
-
-    def begins(self, executor: DebuggedExecutor) -> int | None:
-        """Called before a statement begins; return a line to continue at instead, or ``None``."""
-
-    def fails(self, executor: DebuggedExecutor, request: Fail) -> None:
-        """Called when the program has come to a fault that it does not handle."""
-
-    def around(self, inside: Any, per_slice: int, task: TaskName) -> DebuggedExecutor:
-        """Return a debugged executor around another one."""
+if TYPE_CHECKING:
+    from interp.debugging.debugger import Debugger
 
 
 class DebuggedExecutor:
     """Runs ``inside`` and shows ``hook`` the statements that it wants to see; see `Executor`."""
 
-    def __init__(self, hook: Hook, task: TaskName, inside: Inspectable, per_slice: int) -> None:
+    def __init__(self, hook: Debugger, task: TaskName, inside: Inspectable, per_slice: int) -> None:
         self.task: TaskName = task
         self.inside = inside
         self.at = At("", 0, 0)

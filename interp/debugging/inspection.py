@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
-from grammar.semantics.types import UNKNOWN, Type
-from interp.controller.controller import ArmState
+from grammar.semantics.types import UNKNOWN
+from interp.controller.controller import ArmState, Controller
 from interp.controller.state.tasks import LevelKind
 from interp.controller.state.trace import TaskName
 from interp.debugging.conditions import evaluated, parsed, place_of
@@ -15,30 +15,10 @@ from interp.debugging.executor import DebuggedExecutor
 from interp.debugging.history import Assigned
 from interp.debugging.names import Names, names_in, signal_in
 from interp.port.inspection import InspectedValue, StackFrame
-from interp.port.requests import Path, Value
+from interp.port.requests import Value
 from interp.program.load import CheckedProgram
 from interp.values.faults import LinkError
 from interp.values.values import converted
-
-
-class World(Protocol):
-    """What a debugger needs of the controller (`interp.controller.controller.Controller`)."""
-
-    @property
-    def arm(self) -> ArmState:
-        """The state of the arm."""
-
-    def look(self, path: Path) -> Value:
-        """Return the value of a system variable."""
-
-    def assign(self, path: Path, value: Value) -> None:
-        """Assign a value to a system variable."""
-
-    def type_of(self, path: Path) -> Type:
-        """Return the type of a system variable or of a part of it."""
-
-    def levels(self, task: TaskName) -> list[tuple[LevelKind, int]]:
-        """Return the actions that run on top of a program, each as (kind, priority)."""
 
 
 class Inspection:
@@ -50,12 +30,12 @@ class Inspection:
 
     def __init__(self, program: CheckedProgram) -> None:
         self._program = program
-        self._world: World | None = None
+        self._controller: Controller | None = None
         self._tasks: dict[TaskName, DebuggedExecutor] = {}
 
-    def attach(self, world: World) -> None:
+    def attach(self, controller: Controller) -> None:
         """Set the controller of the run that begins."""
-        self._world = world
+        self._controller = controller
 
     @property
     def tasks(self) -> tuple[TaskName, ...]:
@@ -65,12 +45,12 @@ class Inspection:
     @property
     def arm(self) -> ArmState:
         """The state of the arm."""
-        return ArmState(0, None, 0, 0) if self._world is None else self._world.arm
+        return ArmState(0, None, 0, 0) if self._controller is None else self._controller.arm
 
     def frames(self, task: TaskName = "robot") -> tuple[StackFrame, ...]:
         """Return the call stack of a program, innermost frame first."""
         frames = self._tasks[task].inside.frames()
-        levels = [] if self._world is None else self._world.levels(task)
+        levels = [] if self._controller is None else self._controller.levels(task)
         return tuple(_named(one, levels) for one in frames)
 
     def height(self, task: TaskName) -> int:
@@ -102,7 +82,7 @@ class Inspection:
             seen = self.seen(target, task, frame)
             type_ = UNKNOWN if seen is None else seen.type
         else:
-            type_ = UNKNOWN if self._world is None else self._world.type_of(target)
+            type_ = UNKNOWN if self._controller is None else self._controller.type_of(target)
         found = evaluated(parsed(value), *names, type_)
         if type_ != UNKNOWN and not isinstance(target, str):
             found = converted(found, type_)
@@ -112,16 +92,16 @@ class Inspection:
         """Assign; raises `LinkError` and, for a value that the variable cannot have, `Fault`."""
         if isinstance(change.target, str):
             self._tasks[change.task].inside.put(change.target, change.value, change.frame)
-        elif self._world is None:
+        elif self._controller is None:
             raise LinkError(
                 f"{change.target[0]} belongs to the controller, which is not available here"
             )
         else:
-            self._world.assign(change.target, change.value)
+            self._controller.assign(change.target, change.value)
 
     def _names_of(self, task: TaskName, frame: int) -> tuple[Any, Any, Any]:
         """Return the functions with which `evaluated` looks up names in a frame."""
-        read = None if self._world is None else self._world.look
+        read = None if self._controller is None else self._controller.look
         place = self._tasks[task].inside.frames()[frame]
 
         def look(text: str) -> InspectedValue | None:

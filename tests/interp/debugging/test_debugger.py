@@ -153,7 +153,7 @@ def debug(request: pytest.FixtureRequest) -> Callable[..., tuple[Script, list[Re
         script, world = Script(list(commands)), QuietWorld()
         make = make_of(request.param, program)
         debugger = Debugger(program, script)
-        debugger.attach(World(world))
+        debugger.attach(World(world))  # type: ignore[arg-type]  # has what is asked here
         inside = make(Limits(), None)
         requests = debugger.run(lambda: driven(debugger.around(inside, 1000), world))
         assert requests is not None
