@@ -6,37 +6,24 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import islice, zip_longest
 from operator import itemgetter
-from typing import Final, Protocol
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from conformance.sensitivity.line_reach import Reach
 from conformance.sensitivity.mutated_code import modules, text_of, tree_of
 
+if TYPE_CHECKING:
+    from conformance.sensitivity.mutants import Mutant
+    from conformance.sensitivity.planted_faults import Fault
+
 _RULE: Final = re.compile(r"\b[A-Z]{3}-\d\d\b")
 
 
-class SeededFault(Protocol):
-    """A fault that cases should notice: a drawn `Mutant`, or one that is planted by hand.
-
-    ``lines`` are the first and last line of its function or statement. ``is_module_level`` is set
-    for a change of the value of a name of ``module``, which is then ``function``.
-    """
-
-    @property
-    def name(self) -> str: ...  # noqa: D102
-    @property
-    def module(self) -> str: ...  # noqa: D102
-    @property
-    def function(self) -> str: ...  # noqa: D102
-    @property
-    def lines(self) -> tuple[int, int]: ...  # noqa: D102
-    @property
-    def is_module_level(self) -> bool: ...  # noqa: D102
-    def plant(self) -> AbstractContextManager[object]: ...  # noqa: D102
+#: A fault that cases should notice: a drawn mutant, or one that is planted by hand.
+SeededFault: TypeAlias = "Mutant | Fault"
 
 
 @dataclass(frozen=True, slots=True)

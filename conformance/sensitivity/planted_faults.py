@@ -70,7 +70,7 @@ class Fault:
 
     @property
     def is_module_level(self) -> bool:
-        """See `conformance.sensitivity.case_selection.SeededFault`; only functions are replaced."""
+        """Whether it changes the value of a name; only functions are replaced."""
         return False
 
     def __reduce__(self) -> tuple[Any, ...]:
