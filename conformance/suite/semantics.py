@@ -85,7 +85,8 @@ _SOURCES = """\
 | S7 | KUKA.PLC mxAutomation Logix 1.0, programming, page 25 |
 | S8 | KUKA's quick guide to the syntax of KRL, KSS 8.x, its beginning: names, data, arrays |
 | S9 | KR C2, operating handbook, machine data (2005), pages 14 and 74 to 77 |
-| S10 | delivered with a controller, in public backups: `MsgLib`, `BrakeTestReq`, `masref_main` |
+| S10 | delivered with controllers, in public backups: `MsgLib`, `BrakeTestReq`, `masref_main`, \
+`tm_bib`, `p00`, `RSI`, `EthernetKRL`, `Grp_Func` |
 | T1 to T23 but T21 | manuals and texts of KUKA College, transcribed or translated on public pages |
 | T21 | KUKA.PLC mxAutomation, its function blocks described again by Beckhoff (TF5120) |
 | T24, T25 | m.elecfans.com/article/1905092: signals; m.163wenku.com/p-4165416.html: waits |
@@ -101,6 +102,7 @@ _SOURCES = """\
 | T38 | wenku.csdn.net/doc/jere816oec: dialogues, from KUKA's course Programming 3, KSS 8 |
 | T39 | m.elecfans.com/article/2081633 and 2078651: CREAD and its channels |
 | T40 | m.hlo-trade.com/info/4/114.html: loops and branches, from a text of KUKA College |
+| T41 | m.elecfans.com/article/2037888: $PRO_IP, parts of which have no value; excerpt only |
 | F1 to F4 | robot-forum.com on blending (14422), triggers (34556), axes (24428), REAL (35090) |
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
 | F6 | robot-forum.com on velocities in T1 (43227) |
