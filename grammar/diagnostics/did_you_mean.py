@@ -11,6 +11,10 @@ from grammar.diagnostics.diagnostic import Fix
 _MOST_NAMES = 20_000
 _LONGEST_NAME = 64
 _MOST_SHOWN = 3
+# Suggestions for one file: each costs a look at every name that is known.
+_MOST_SUGGESTIONS = 20
+# A word of fewer letters is the beginning of too much.
+_SHORTEST_BEGINNING = 3
 
 
 def nearest(name: str, names: Iterable[str], most: int = _MOST_SHOWN) -> list[str]:
@@ -55,6 +59,25 @@ def one_of(names: Iterable[str], mark: str = "") -> Fix | None:
     *first, last = shown
     asked = f"{', '.join(first)} or {last}" if first else last
     return Fix(f"did you mean {asked}?", names=tuple(shown))
+
+
+class NameSuggestions:
+    """Suggests names for the first unknown names of a file."""
+
+    def __init__(self) -> None:
+        self._left = _MOST_SUGGESTIONS
+
+    def suggest(self, name: str, names: Iterable[str], mark: str = "") -> Fix | None:
+        """Return those of ``names`` that are similar to ``name``, each after ``mark``."""
+        if not self._left:
+            return None
+        self._left -= 1
+        known = list(names)
+        fix = did_you_mean(name, known, mark)
+        if fix is None and len(name) >= _SHORTEST_BEGINNING:
+            key = name.upper()
+            fix = one_of((one for one in known if one.upper().startswith(key)), mark)
+        return fix
 
 
 def _common_start(one: str, other: str) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import random
 import statistics
 import time
 from collections import defaultdict
@@ -34,6 +35,7 @@ from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.reproducer.reduce import Reducer
 from recovery.survey.result_cache import key_of
 from recovery.survey.survey import survey_texts
+from support.files.discovery import source_files
 from support.files.result_store import ResultStore
 from support.parallel.processes import process_pool
 from support.parallel.progress import Progress, no_progress
@@ -258,6 +260,27 @@ def covering(grammar: Grammar) -> list[str]:
         for sentence in sentences.through(rule)
     }
     return sorted(text for text in texts if recognizer.accepts(text))
+
+
+def material_for(
+    grammar: Grammar, roots: Sequence[Path], negatives: Sequence[Negative], seed: int
+) -> BenchMaterial:
+    """Programs below ``roots``, half of them shown to the tool and half held out.
+
+    Programs that the grammar does not read are left out. The shortest programs through every part
+    of the grammar are shown too, so that every part is used. Raises
+    `support.files.discovery.IngestError`.
+    """
+    recognizer = Recognizer(grammar)
+    programs = [file.text for file in source_files(roots) if recognizer.accepts(file.text)]
+    random.Random(seed).shuffle(programs)
+    shown = [*programs[::2], *covering(grammar)]
+    return BenchMaterial(
+        grammar,
+        tuple((f"program {number}", text) for number, text in enumerate(shown, 1)),
+        tuple(programs[1::2]),
+        tuple(negatives),
+    )
 
 
 def assess_all(

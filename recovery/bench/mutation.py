@@ -169,3 +169,12 @@ def combined(singles: Sequence[Mutant], grammar: Grammar, count: int, seed: int)
         made = _made(f"{len(chosen)} parts", grammar, edits, set(names))
         out += (replace(mutant, parts=len(chosen)) for mutant in made)
     return out
+
+
+def choose_mutants(grammar: Grammar, singles: int, multiple: int, seed: int) -> list[Mutant]:
+    """All single mutants, or ``singles`` of them drawn, and ``multiple`` with several parts out."""
+    every = list(mutants(grammar))
+    drawn = every
+    if singles and singles < len(every):
+        drawn = random.Random(seed).sample(every, singles)
+    return drawn + combined(every, grammar, multiple, seed)

@@ -7,12 +7,16 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 
 from grammar.notation.edits import AddAlternative
+from grammar.parser.recognizer import Recognizer
+from recovery.forms.keywords import Vocabulary
 from recovery.forms.symbols import Symbol, Token
+from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms
-from recovery.proposals.blocks import BlockLines
+from recovery.proposals.blocks import BlockLines, SourceFile, find_blocks
+from recovery.tuning import BALANCED_FILES
 
 
 class BlockEdits:
@@ -99,3 +103,31 @@ class BlockEdits:
         """
         having = [b for b in self.blocks if any(map(self._bodies, self._hosts_of_block(b)))]
         return frozenset[str]().union(*(block.words for block in having))
+
+
+def blocks_of(
+    keywords: InferredKeywords,
+    recognizer: Recognizer,
+    prefixes: frozenset[str],
+) -> list[BlockLines]:
+    """Return the blocks of a corpus that the grammar of the recogniser lacks."""
+    lexer, corpus = recognizer.lexer, keywords.corpus
+    name = lexer.name_kind
+    tokens = []
+    leads = []
+    for line in corpus.lines:
+        meant = dict(keywords.in_line(line))
+        at = int(len(line) > 1 and line[0] in prefixes)
+        lead = line[at]
+        if lead in keywords.words and lexer.kinds[lead] == name:
+            meant.setdefault(at, lead)
+        leads.append(lead if lexer.kinds[lead] != name or at in meant else "")
+        tokens.append(tuple((lexer.kinds[word], meant.get(i)) for i, word in enumerate(line)))
+    files = [
+        SourceFile(tuple((leads[n], tokens[n]) for n in numbers), file.origins)
+        for file, numbers in zip(corpus.files, corpus.of_file, strict=True)
+    ]
+    vocabulary = Vocabulary(recognizer)
+    free = {w for w in leads if w.isidentifier() and not vocabulary.is_written(w)}
+    origins, least = keywords.least
+    return find_blocks(files, free, (origins, min(BALANCED_FILES, 1 + least)))

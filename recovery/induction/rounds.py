@@ -33,7 +33,7 @@ from recovery.clustering.edit_trial import EditTrial, changed_rules, edited
 from recovery.forms.operand_rules import OperandRules
 from recovery.forms.symbol_reader import SymbolReader
 from recovery.forms.symbols import operands_of
-from recovery.induction.corpus_blocks import blocks_of
+from recovery.induction.block_edits import blocks_of
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
 from recovery.induction.folding import folds_of, size

@@ -10,10 +10,10 @@ from functools import cached_property
 from typing import Any
 
 from grammar.check.analysis.control_flow_graph import FlowGraph, FlowNode, flow_graph
-from grammar.check.analysis.name_suggestions import NameSuggestions
 from grammar.check.analysis.spelling import Spelling, spelling_of
 from grammar.diagnostics.codes import Severity, code, of_message
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose
+from grammar.diagnostics.did_you_mean import NameSuggestions
 from grammar.semantics.link import Project
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Resolution, Use

@@ -61,8 +61,8 @@ def mutation(
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.model import GrammarError
-    from recovery.bench.assessment import assess_all
-    from recovery.bench.specimens import choose_mutants, material_for
+    from recovery.bench.assessment import assess_all, material_for
+    from recovery.bench.mutation import choose_mutants
     from recovery.negatives.negatives import NegativeError
     from support.files.discovery import IngestError
 

@@ -20,8 +20,7 @@ from recovery.bench.assessment import (
     covering,
     figures,
 )
-from recovery.bench.mutation import Mutant, combined, mutants
-from recovery.bench.specimens import choose_mutants
+from recovery.bench.mutation import Mutant, choose_mutants, combined, mutants
 from recovery.clustering.cause import Proposal, no_negatives
 from recovery.clustering.cluster import Clusters, cluster
 
