@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 from grammar.notation.generate import generate
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.ledger.baseline import Corpora, GrammarMeasurement
+from recovery.ledger.baseline import Corpora
 from recovery.ledger.construct import ACCEPTED, Construct, LedgerError
 from recovery.ledger.construct_file import text_of
 from recovery.ledger.evaluation import Evaluation, evaluate, losses
@@ -89,7 +90,8 @@ def prepare(
     asked = {c.file for c in given}
     refusals: list[tuple[str, str]] = []
     evaluations: list[Evaluation] = []
-    grammar, known = preliminary, _LastMeasurement(corpora)
+    grammar = preliminary
+    measure = lru_cache(maxsize=1)(corpora.measure)  # the next construct begins with the last one
     for place, construct in enumerate(order):
         if not construct.is_accepted and construct.file not in asked:
             continue
@@ -99,14 +101,14 @@ def prepare(
             refusals.append((construct.id, str(error)))
             return Acceptance(tuple(order), tuple(evaluations), grammar, tuple(refusals))
         if construct.file in asked:
-            found = evaluate(construct, known.measure(grammar), known.measure(wider))
+            found = evaluate(construct, measure(grammar), measure(wider))
             evaluations.append(found)
             refusals += ((construct.id, why) for why in found.refusals)
             order[place] = replace(found.construct, state=ACCEPTED, comment="")
             on_done(1)
         grammar = wider
     if is_again and current:  # a change in the middle must not undo later constructs
-        final, now = known.measure(grammar), corpora.measure(current)
+        final, now = measure(grammar), corpora.measure(current)
         refusals += (("in the end", why) for why in losses(now, final))
     recognizer = Recognizer(grammar)
     refusals += (
@@ -117,19 +119,6 @@ def prepare(
         if (construct.id, why) not in refusals
     )
     return Acceptance(tuple(order), tuple(evaluations), grammar, tuple(refusals))
-
-
-class _LastMeasurement:
-    """A cache of the last measurement, with which the next construct begins."""
-
-    def __init__(self, corpora: Corpora) -> None:
-        self._corpora = corpora
-        self._last: GrammarMeasurement | None = None
-
-    def measure(self, grammar: Grammar) -> GrammarMeasurement:
-        if self._last is None or self._last.grammar.text != grammar.text:
-            self._last = self._corpora.measure(grammar)
-        return self._last
 
 
 def _is_in(construct: Construct, constructs: Sequence[Construct]) -> bool:
