@@ -239,12 +239,19 @@ def _unexpected_outputs(case: Case, seen: Observation) -> Iterator[Check]:
 
 
 def _unexpected_ending(case: Case, seen: Observation) -> Iterator[Check]:
-    """Yield a check if the program ends otherwise; it is as sure as what says how it ends."""
+    """Yield a check if the program ends otherwise; it is as sure as what says how it ends.
+
+    Where nothing says so, what is expected at the line at which it ends says that it goes on there.
+    """
     causes = expected_ending(case.expectations)[1]
     for check in evaluate_ending(case.expectations, seen, case.main):
         if seen.ending == "crash":
             yield check
-        elif causes:
+            continue
+        causes = causes or tuple(
+            one for one in case.expectations if (one.file, one.line) == (check.file, check.line)
+        )
+        if causes:
             yield _resting_on(causes, case, check)
         else:
             yield replace(check, is_sure=case.may_fail)

@@ -14,7 +14,6 @@ from conformance.evaluation.observation import Event, Observation
 from conformance.evaluation.path_geometry import between
 from conformance.suite.expectations import Anchor, Expectation, When
 from interp.robot.simulation.tracking import PathRecord
-from interp.values.faults import FAULTS
 
 #: The state of an expectation, and what was observed.
 Evaluated = tuple[Literal["met", "unmet", "open"], str]
@@ -193,8 +192,7 @@ def _fault(one: Expectation, seen: Observation, _marks: Marks) -> Evaluated:
     names |= {str(event.fields.get("number")) for event in there}
     wanted = one.arguments[0]
     if seen.watched is not None and not wanted.isdigit():  # a controller does not know our slugs
-        known = FAULTS.get(wanted)
-        wanted = "" if known is None or known.number is None else str(known.number)
+        wanted = ""
     is_met = wanted in names if wanted else bool(there)
     return ("met" if is_met else "unmet"), actual or f"none: {seen.ending}"
 

@@ -173,6 +173,15 @@ def test_fault_of_the_submit_program_does_not_end_the_robots() -> None:
     assert ["met"] == states(replace(case("runs 1"), expectations=(expected,)), there)
 
 
+def test_what_only_a_doubtful_clause_allows_may_end_the_program() -> None:
+    """That a line does not fail is as sure as what is expected there, or else as the case."""
+    asked = case("runs 1", more={4: "runs 1 [ARI-12]"})
+    for line, is_sure in ((4, False), (5, True)):
+        events = event("line"), event("line", line=4), event("fault", line=line)
+        found = evaluate(asked, Observation(events=events, ending="fault"))
+        assert [is_sure] == [one.is_sure for one in found if one.state == "unmet"]
+
+
 @pytest.mark.parametrize(
     ("texts", "events"),
     [
