@@ -18,6 +18,7 @@ from recovery.clustering.file_trial import FailingFile, FileTrial
 from recovery.clustering.reason import AS_NAME, ReasonFinder
 from recovery.clustering.regression import ParsedFiles
 from recovery.clustering.title import TitleWriter
+from recovery.clustering.unknown_characters import with_tokens
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.failing_line import FailingLine
 from recovery.survey.signature import Signature, signature_of
@@ -125,6 +126,12 @@ def cluster(
             ),
             groups.reasons,
         )
+
+        def place_of(number: int) -> tuple[FailingLine, str]:
+            member = groups.specimens[number]
+            return member.failed, text_of(member.file)
+
+        causes = with_tokens(groups.recognizer, causes, groups.lines, place_of, count_negatives)
     cause_of = {n: c for c, cause in enumerate(causes) for n in cause.lines}
     return _assembled(found, groups, causes, cause_of)
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from grammar.notation.edits import AddRule, AddToken, Edit, Preamble, RemoveRule, SetComment, apply
 from grammar.notation.model import GrammarError
 from grammar.parser.ambiguity import is_ambiguous
+from grammar.parser.lexer import Lexer
 from grammar.parser.network import is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.shortest_paths import Paths
@@ -42,7 +43,8 @@ class TrialResult:
 def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
     """Return a recogniser of the edited grammar, or ``None`` if the edits do not fit it.
 
-    Token kinds keep their numbers; the keywords that the edits reserve follow them.
+    Token kinds keep their numbers; the keywords that the edits reserve follow them, and the tokens
+    that they add behind the last rule.
     """
     try:
         grammar = apply(recognizer.grammar, edits)
@@ -51,6 +53,8 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
             if isinstance(edit, AddToken):
                 lexer = lexer.with_keyword(edit.name)
         if any(isinstance(e, AddRule | RemoveRule) for e in edits):
+            if any(isinstance(e, AddRule) and e.text[0].isupper() for e in edits):
+                lexer = Lexer(grammar)
             network = network_of(grammar, lexer)
         else:
             network = recognizer.network

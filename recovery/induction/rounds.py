@@ -56,11 +56,11 @@ from recovery.induction.steps import (
     joined,
 )
 from recovery.induction.supported_forms import SupportedForms
-from recovery.induction.unknown_tokens import unknown_tokens
 from recovery.language import CorpusFile, Language
 from recovery.ledger.construct import Evidence
 from recovery.negatives.negatives import NegativeSet
 from recovery.proposals.edit_site import LinePattern
+from recovery.proposals.unknown_tokens import unknown_tokens
 from recovery.survey.failing_line import source_lines
 from recovery.tuning import (
     ADVANCED_WORTH,

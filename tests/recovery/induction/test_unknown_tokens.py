@@ -7,9 +7,9 @@ from grammar.notation.model import Grammar
 from grammar.parser.lexer import lexer_of
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.rounds import Induction
-from recovery.induction.unknown_tokens import unknown_tokens
 from recovery.language import CorpusFile
 from recovery.negatives.negatives import NegativeSet
+from recovery.proposals.unknown_tokens import unknown_tokens
 
 
 @pytest.mark.parametrize(
