@@ -251,7 +251,9 @@ class CandidateFinder:
         self, rule: str, symbols: tuple[str, ...], rank: int, tokens: tuple[Edit, ...]
     ) -> Iterator[RankedEdits]:
         text = " ".join(symbols)
-        known = self.profile.has_only_blocks(rule) or symbols[0] in self.profile.openers
+        is_word = len(symbols) == 1 and self.profile.vocabulary.is_set_of_words(rule)
+        opens = symbols[0] in self.profile.openers and not is_word
+        known = self.profile.has_only_blocks(rule) or opens
         is_foreign = known or self.similarity.is_foreign(rule, symbols)
         if text not in self.profile.alternatives(rule) and not is_foreign:
             rank += self.similarity.dissimilarity(rule, symbols)

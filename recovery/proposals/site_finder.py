@@ -210,6 +210,11 @@ class EditSiteFinder:
                 ):
                     yield self._insertion(rule, place, words[start:end])
                 yield from self._repetitions(rule, place, words[start:end])
+            is_end = 0 < start == len(words) - 1 and words[start][0] == self.recognizer.line_kind
+            if is_end and rule == self.grammar.start:
+                # a line end where the file had to end
+                rank = self._insertion_width(rule) + SITE_COST
+                yield rank, (Insert(rule, place, f"{self.recognizer.lexer.line_end}*"),)
             yield from self._blocks(rule, place, words[start:])
             if number > len(sequence.elements):
                 continue

@@ -106,7 +106,8 @@ class SuspectedKeywords:
                 if self._explains(run, form):
                     self._count(found[word], digest, failed.words, form.kinds, place)
             for place, word in names_of_line(failed.words, form.kinds, self.lexer):
-                found[word].plain += place not in odd
+                # where the line fails no name can be
+                found[word].plain += place not in odd and place != form.index
         self._words = frozenset(
             word
             for word, uses in found.items()
