@@ -85,8 +85,8 @@ _SOURCES = """\
 | S7 | KUKA.PLC mxAutomation Logix 1.0, programming, page 25 |
 | S8 | KUKA's quick guide to the syntax of KRL, KSS 8.x, its beginning: names, data, arrays |
 | S9 | KR C2, operating handbook, machine data (2005), pages 14 and 74 to 77 |
-| S10 | delivered with controllers, in public backups: `MsgLib`, `BrakeTestReq`, `masref_main`, \
-`tm_bib`, `p00`, `RSI`, `EthernetKRL`, `Grp_Func` |
+| S10 | delivered with controllers, in public backups: `MsgLib`, `BrakeTestReq`, `BrakeTestPark`, \
+`masref_main`, `tm_bib`, `p00`, `RSI`, `EthernetKRL`, `Grp_Func` |
 | T1 to T23 but T21 | manuals and texts of KUKA College, transcribed or translated on public pages |
 | T21 | KUKA.PLC mxAutomation, its function blocks described again by Beckhoff (TF5120) |
 | T24, T25 | m.elecfans.com/article/1905092: signals; m.163wenku.com/p-4165416.html: waits |
