@@ -82,7 +82,7 @@ _SOURCES = """\
 | S4 | the message base of KSS: 511 texts with their numbers, published by Intrinsic |
 | S5 | machine data of several robots |
 | S6 | a public list of 445 system variables with descriptions |
-| S7 | KUKA.PLC mxAutomation Logix 1.0, programming, page 25 |
+| S7 | KUKA.PLC mxAutomation Logix 1.0, programming, pages 25 and 81 |
 | S8 | KUKA's quick guide to the syntax of KRL, KSS 8.x, its beginning: names, data, arrays |
 | S9 | KR C2, operating handbook, machine data (2005), pages 14 and 74 to 77 |
 | S10 | delivered with controllers, in public backups: `MsgLib`, `BrakeTestReq`, `BrakeTestPark`, \
@@ -103,6 +103,9 @@ _SOURCES = """\
 | T39 | m.elecfans.com/article/2081633 and 2078651: CREAD and its channels |
 | T40 | m.hlo-trade.com/info/4/114.html: loops and branches, from a text of KUKA College |
 | T41 | m.elecfans.com/article/2037888: $PRO_IP, parts of which have no value; excerpt only |
+| T42 | m.elecfans.com/article/2078130: BRAKE; excerpt only |
+| T43 | wxredian.com/art?id=437c338c679012684d4d9d393ecc8696: analogue outputs; excerpt only |
+| T44 | m.elecfans.com/article/2097891: analogue outputs, from a manual; excerpt only |
 | F1 to F4 | robot-forum.com on blending (14422), triggers (34556), axes (24428), REAL (35090) |
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
 | F6 | robot-forum.com on velocities in T1 (43227) |

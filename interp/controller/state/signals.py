@@ -2,7 +2,7 @@
 
 Digital signals begin as FALSE, except input 1025, which is always TRUE; 1026 is always FALSE
 [IOT-02]. A group ``("$OUT", 3, "TO", 6)`` is an INT whose lowest bit is its first signal [IOT-03];
-with 32 bits it is signed. Analog values are in [-1, 1] [IOT-06].
+with 32 bits it is signed. Analog values are limited to [-1, 1] [IOT-06].
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Signals:
         return number - 2**32 if number >= 2**31 else number
 
     def write(self, path: Path, value: Value) -> None:
-        """Set an output; faults ``read_only``, ``index``, ``inadmissible``, ``invalid``."""
+        """Set an output; faults ``read_only``, ``index``, ``inadmissible``."""
         if path[0] in ("$IN", "$ANIN"):
             raise fault("read_only")
         self.put(path, value)
@@ -123,11 +123,10 @@ class Signals:
     def _put_analog(self, name: str, place: int, value: Value) -> None:
         number = converted(value, REAL)
         assert isinstance(number, float), "converted"
-        if not -1.0 <= number <= 1.0:
-            raise fault("invalid")
+        number = single(min(max(number, -1.0), 1.0))
         if self._analog[name][place] != number:
-            self._analog[name][place] = single(number)
-            self._report(name, place, single(number))
+            self._analog[name][place] = number
+            self._report(name, place, number)
 
     def _range(self, path: Path) -> tuple[str, int, int]:
         """Return the array and the first and last index of a path."""
