@@ -18,7 +18,7 @@ from conformance.evaluation.execution import FRONT, PROFILES, Setup, observe
 from conformance.evaluation.verdicts import KnownFailures
 from conformance.suite.case import CASES, ENDINGS, Case, CaseError, find_cases
 from conformance.suite.expectations import KINDS, Expectation, When
-from conformance.suite.registry import Clause, Rule, basis, corners, registry
+from conformance.suite.registry import Clause, Rule, basis, corners, registry, searches, unconfirmed
 from grammar.syntax.build import read_module
 from interp.controller.inputs.input_script import Script, ScriptError
 
@@ -124,6 +124,11 @@ def lint(root: Path = CASES) -> list[str]:
             for name in sorted(frozenset().union(*corners().values()).difference(names))
         ]
         found += [f"known_failures.toml: there is no case {name}" for name in lost]
+        found += [
+            f"searches.tsv: no source of {one} was looked for"
+            for one in unconfirmed()
+            if one not in searches()
+        ]
     return found
 
 

@@ -62,6 +62,29 @@ def registry() -> Mapping[str, Rule]:
     return MappingProxyType(found)
 
 
+@dataclass(frozen=True, slots=True)
+class Search:
+    """A search for a source of a rule or clause that had none: for what, and what was found."""
+
+    wanted: str
+    found: str
+
+
+@cache
+def searches() -> Mapping[str, Search]:
+    """Return the searches for sources, by the IDs of rules and clauses."""
+    text = resources.files("conformance").joinpath("searches.tsv").read_text(encoding="utf-8")
+    rows = (line.split("\t") for line in text.splitlines()[1:])
+    return MappingProxyType({id_: Search(wanted, found) for id_, wanted, found in rows})
+
+
+@cache
+def unconfirmed() -> tuple[str, ...]:
+    """Return the IDs of the rules without clauses, and clauses, of tier R or X alone."""
+    parts = (part for rule in registry().values() for part in (rule.clauses or (rule,)))
+    return tuple(part.id for part in parts if {"R", "X"}.issuperset(part.tier.split("+")))
+
+
 @cache
 def corners() -> Mapping[str, frozenset[str]]:
     """Return the names of cases about corner cases, by their kinds."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from conformance.suite.registry import Rule, registry
+from conformance.suite.registry import Rule, registry, searches
 from grammar.diagnostics.codes import by_slug
 from grammar.semantics.rules import is_confirmed, tiers
 
@@ -51,8 +51,8 @@ _TOPICS: Mapping[str, tuple[str, str]] = {
 _HEAD = """\
 # Semantics
 
-<!-- Made by conformance/suite/semantics.py from conformance/rules.toml and
-grammar/diagnostics/codes.tsv. Do not edit. -->
+<!-- Made by conformance/suite/semantics.py from conformance/rules.toml, conformance/searches.tsv
+and grammar/diagnostics/codes.tsv. Do not edit. -->
 
 For anyone who asks what KRL means: all rules that are known, and what the workbench does about
 each. There is no public specification. Each rule has its certainty, its source, and what is done.
@@ -60,7 +60,8 @@ each. There is no public specification. Each rule has its certainty, its source,
 **How well it is known.** `P`: a manual page, or a file that KUKA wrote. `T`: a transcription or
 translation of one. `F`: practitioners on a forum. `D`: measured on real controller files. `R`:
 recollection of a manual that could not be read again. `X`: a page of unknown origin. What rests on
-`R` or `X` alone is *unconfirmed*: it is never reported as an error.
+`R` or `X` alone is *unconfirmed*: it is never reported as an error. What was looked for to confirm
+it stands [at the end](#searches).
 
 **What is done.** *grammar*: `KRL.g4` reads it, or refuses what is wrong. *tables*: it is in the
 tables of types, variables and functions in `grammar/system/`. *checked*: `krl check` reports it,
@@ -118,6 +119,16 @@ _SOURCES = """\
 """
 
 
+_SEARCHES = """\
+## Searches
+
+For each rule and clause that rested on recollection alone: what was looked for in November 2026,
+and what was found.
+
+| clause | looked for | found |
+| --- | --- | --- |"""
+
+
 def codes_of() -> Mapping[str, tuple[str, ...]]:
     """Return the codes of the findings that rest on each rule, by the rule's ID."""
     found: dict[str, tuple[str, ...]] = dict.fromkeys(registry(), ())
@@ -140,7 +151,8 @@ def page() -> str:
             f"## {title}\n\n{about}\n\n| rule | tier | | today | source |\n"
             f"| --- | --- | --- | --- | --- |\n{rows}\n"
         )
-    return "\n".join([*parts, _SOURCES])
+    found = [f"| {id_} | {one.wanted} | {one.found} |" for id_, one in searches().items()]
+    return "\n".join([*parts, _SOURCES, _SEARCHES, *found, ""])
 
 
 def _overview(by_topic: Mapping[str, Iterable[Rule]]) -> str:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from conformance.suite import semantics
 from conformance.suite.case import Case
-from conformance.suite.registry import registry
+from conformance.suite.registry import registry, searches, unconfirmed
 from conformance.suite.semantics import PAGE, TIERS, codes_of, page, tier_table
 from grammar.diagnostics.codes import by_code
 from grammar.semantics.predefined import System
@@ -82,3 +82,10 @@ def test_every_code_is_given_by_a_check() -> None:
 def test_topics_are_those_of_the_rules() -> None:
     """Every topic has rules, and every rule has a topic."""
     assert set(semantics._TOPICS) == {rule.topic for rule in registry().values()}
+
+
+def test_each_unconfirmed_clause_was_looked_for() -> None:
+    """What was searched is told of each, and of no clause that is not there."""
+    known = {*registry(), *(one.id for rule in registry().values() for one in rule.clauses)}
+    assert set(unconfirmed()) <= set(searches()) <= known
+    assert all(one.wanted and one.found for one in searches().values())
