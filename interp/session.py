@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Any, Literal
 
 from grammar.check.analysis.context import placed
 from grammar.syntax import ast
@@ -44,7 +44,6 @@ from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     from interp.debugging.debugger import Debugger
-    from interp.robot.arm import Arm
     from interp.robot.planning.planned_arm import PlannedArm
     from interp.robot.simulation.observations import Observation, Observer
     from interp.robot.simulation.robot_files import RobotFile
@@ -244,7 +243,7 @@ def _system_values(program: CheckedProgram) -> Mapping[str, Value]:
     return system_values(program)
 
 
-def _arm(machine: MachineData, start: Sequence[float], file: RobotFile | None) -> Arm:
+def _arm(machine: MachineData, start: Sequence[float], file: RobotFile | None) -> DeferredArm:
     """Return the arm; raises `LinkError` if its start position is impossible.
 
     The masses of a robot from a ``file`` are known, so that its torques limit its motions.
@@ -268,11 +267,11 @@ def _arm(machine: MachineData, start: Sequence[float], file: RobotFile | None) -
             arm.target()
         except Fault as fault:
             raise LinkError(f"the arm cannot stand at its start: {fault}") from fault
-    return cast("Arm", arm)
+    return arm
 
 
 def _tracking(
-    arm: Arm,
+    arm: DeferredArm,
     robot: Robot,
     machine: MachineData,
     start: Sequence[float],

@@ -82,11 +82,9 @@ class _MotionPath:
         moment = self.start if not self.is_whole and self.start <= time <= self.end else time
         poses, wanted = self.path.points[rows], self._placement(moment)
         for row, pose in zip(rows, poses, strict=True):
-            own, externals = (
-                self._placement(self.path.times[row]),
-                self.path.axes[row, ROBOT_AXES:].tolist(),
-            )
+            own = self._placement(self.path.times[row])
             if own != wanted:
+                externals = self.path.axes[row, ROBOT_AXES:].tolist()
                 flange = own.at(externals).flange(Pose.of(*pose))
                 pose[:] = wanted.at(externals).point(flange).components
         return np.hstack((poses[:, :3], np.unwrap(poses[:, 3:], period=360.0, axis=0)))

@@ -101,6 +101,11 @@ class PredefinedFunction:
         """Return the parameter of the argument at ``place``, counted from 0, if it can have one."""
         return self.parameters[place] if place < len(self.parameters) else self.more
 
+    def takes(self, count: int) -> bool:
+        """Return whether a call may have so many arguments."""
+        least = len(self.parameters)
+        return count == least or (count > least and self.more is not None)
+
     @property
     def is_unconfirmed(self) -> bool:
         """Whether its parameters rest on recollection only, which cannot support an error."""

@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
-from grammar.semantics.predefined import PredefinedParameter, System
+from grammar.semantics.predefined import PredefinedFunction, System
 from grammar.semantics.types import (
     AXES,
     BOOL,
@@ -185,24 +185,15 @@ def _word(type_name: str, name: str) -> EnumValue:
 
 
 @dataclass(frozen=True, slots=True)
-class PredefinedFunction:
+class ComputingFunction:
     """A predefined function that only computes.
 
-    ``more`` describes arguments that can follow those of ``parameters``. A function that
-    ``uses_surroundings`` receives a `Surroundings` before its arguments.
+    One that ``uses_surroundings`` receives a `Surroundings` before its arguments.
     """
 
-    name: str
+    declared: PredefinedFunction
     function: Callable[..., Outcome]
-    parameters: tuple[PredefinedParameter, ...]
-    more: PredefinedParameter | None
-    result: Type | None
     uses_surroundings: bool
-
-    def is_out(self, place: int) -> bool:
-        """Return whether the function may change its argument at ``place``, counted from 0."""
-        known = self.parameters[place] if place < len(self.parameters) else self.more
-        return known is not None and known.is_out
 
 
 def _plain(function: Callable[..., Any]) -> Callable[..., Outcome]:
@@ -222,21 +213,12 @@ _ASKING: Mapping[str, Callable[..., Outcome]] = {
 }
 
 
-def _builtin(name: str) -> PredefinedFunction:
-    known_as = System.load().functions[name]
-    return PredefinedFunction(
-        name,
-        _ASKING.get(name) or _COMPUTING[name],
-        known_as.parameters,
-        known_as.more,
-        result=known_as.result,
-        uses_surroundings=name in _ASKING,
-    )
-
-
 #: All predefined functions that only compute, by their names in upper case.
-BUILTINS: Mapping[str, PredefinedFunction] = MappingProxyType(
-    {name: _builtin(name) for name in sorted({*_COMPUTING, *_ASKING})}
+BUILTINS: Mapping[str, ComputingFunction] = MappingProxyType(
+    {
+        name: ComputingFunction(System.load().functions[name], function, name in _ASKING)
+        for name, function in sorted({**_COMPUTING, **_ASKING}.items())
+    }
 )
 
 #: As how many statements functions and the operator ``:`` count. One is the time of an
@@ -304,14 +286,14 @@ def call(name: str, arguments: Sequence[Value | None], surroundings: Surrounding
     many arguments or one has the wrong type, and whatever the function faults.
     """
     builtin = BUILTINS[name.upper()]
-    least = len(builtin.parameters)
-    if len(arguments) < least or (len(arguments) > least and builtin.more is None):
+    parameters = builtin.declared.parameters
+    if not builtin.declared.takes(len(arguments)):
         raise fault("argument")
     given: list[Any] = [
         argument if parameter.is_out else _passed(parameter.type, argument)
-        for parameter, argument in zip(builtin.parameters, arguments, strict=False)
+        for parameter, argument in zip(parameters, arguments, strict=False)
     ]
-    given += arguments[least:]
+    given += arguments[len(parameters) :]
     if builtin.uses_surroundings:
         given.insert(0, surroundings)
     return builtin.function(*given)

@@ -253,13 +253,13 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
     yield _Step(
         "growth", ("growth", *given, "--out", str(folder / "growth")), 0.15, "growth/index.html"
     )
+    limits = {
+        "scale": ("--sizes", "5,10,20"),
+        "conform": ("--mutants", str(max(10, round(2 * minutes))), "--seed", seed),
+    }
     for bench in ("recover", "check", "scale", "vm", "arm", "conform"):
         arguments = ("bench", bench, *(given if bench in ("recover", "check", "scale") else ()))
-        if bench == "scale":
-            arguments += ("--sizes", "5,10,20")
-        if bench == "conform":
-            arguments += ("--mutants", str(max(10, round(2 * minutes))), "--seed", seed)
-        yield _Step(f"bench-{bench}", arguments, 0.15)
+        yield _Step(f"bench-{bench}", (*arguments, *limits.get(bench, ())), 0.15)
     sample = str(max(4, round(minutes / 2)))
     yield _Step(
         "bench-mutation", ("bench", "mutation", "--singles", sample, "--multiple", "4"), 0.2

@@ -133,9 +133,9 @@ _SPACES = (Space.VALUE, Space.ROUTINE, Space.TYPE)
 def completions(looked: AnalysedFile, offset: int) -> list[Candidate]:
     """Return the words that can be written at an offset: keywords, then names, nearest first.
 
-    After ``#`` these are the constants of the enumeration of the variable in front, of all
-    enumerations where there is none; after a dot the members of the
-    structure, after GOTO the labels of the routine. There are none in comments and texts.
+    After ``#`` these are the constants of the enumeration of the variable in front, or of all
+    enumerations; after a dot the members of the structure, after GOTO the labels of the routine.
+    There are none in comments and texts.
     """
     line, column = looked.source.place(offset)
     before = looked.source.line(line)[: column - 1]
@@ -144,8 +144,10 @@ def completions(looked: AnalysedFile, offset: int) -> list[Candidate]:
     if re.search(r"#\s*\w*$", before):
         compared = _COMPARED.search(before)
         type_ = _type_of(looked, line, compared[1]) if compared is not None else None
-        is_enumeration = type_ is not None and type_.kind is Kind.ENUMERATION
-        found = _constants_of(type_) if type_ and is_enumeration else _constants(looked)
+        if type_ is not None and type_.kind is Kind.ENUMERATION:
+            found = _constants_of(type_)
+        else:
+            found = _constants(looked)
     elif (member := _MEMBER.search(before)) is not None:
         found = _members(looked, line, member[1])
     elif re.search(r"\bGOTO\s+\w*$", before, re.IGNORECASE):

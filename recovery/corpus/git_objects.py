@@ -99,7 +99,7 @@ def read_files(
     """
     found = _objects(git_dir, "--batch-check=%(objecttype) %(objectsize)", revision, sizes)
     kinds = dict(zip(sizes, found.splitlines(), strict=True))
-    same = [path for path, size in sizes.items() if kinds[path] == b"blob %d" % size]
+    same = {path: size for path, size in sizes.items() if kinds[path] == b"blob %d" % size}
     contents = io.BytesIO(_objects(git_dir, "--batch", revision, same))
     for path, kind in kinds.items():
         if path in same:

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import overload
 from weakref import finalize
 
 from recovery.survey.failing_line import FailingLine, as_failing_line, as_values, source_lines
@@ -75,7 +75,11 @@ class _Failures(Sequence[FailingLine]):
     def __hash__(self) -> int:
         return hash(tuple(self))
 
-    def __getitem__(self, place: Any) -> Any:
+    @overload
+    def __getitem__(self, place: int) -> FailingLine: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[FailingLine]: ...
+    def __getitem__(self, place: int | slice) -> FailingLine | list[FailingLine]:
         return list(self)[place]
 
 
@@ -171,7 +175,11 @@ class SurveyedFiles(Sequence[SurveyedFile]):
         ((count,),) = self._base.execute("SELECT COUNT(*) FROM content WHERE reason IS NULL")
         return int(count)
 
-    def __getitem__(self, place: Any) -> Any:
+    @overload
+    def __getitem__(self, place: int) -> SurveyedFile: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[SurveyedFile]: ...
+    def __getitem__(self, place: int | slice) -> SurveyedFile | list[SurveyedFile]:
         return list(self)[place]
 
     def _contents(self, reason: str) -> Iterator[tuple[int, str, int, str, int, list[Found]]]:

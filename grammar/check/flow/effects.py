@@ -331,13 +331,12 @@ def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
     changed = frozenset[str]().union(*(one.changed for one in files))
     yield from of_summaries([one.summaries for one in files if one.summaries])
     used = frozenset[tuple[str, str]]().union(*(one.used for one in files))
-    if REST not in changed:
-        for place in (place for one in files for place in one.valueless):
+    for one in files:
+        for place in one.valueless if REST not in changed else ():
             key = place.what.upper()
             if (place.path, key) in used and key not in changed:
                 message = f"{place.what} has no value, and nothing assigns to it"
                 yield diagnose("never-assigned", place.path, place.region, message)
-    for one in files:
         if "" not in switched_on:
             yield from _never_on(one.interrupts, switched_on | meant)
         if "$OUT" not in reset:

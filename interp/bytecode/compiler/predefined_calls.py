@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import PurePosixPath
 
 from grammar.semantics.assignability import assignable
-from grammar.semantics.predefined import PredefinedFunction, PredefinedParameter, System
+from grammar.semantics.predefined import PredefinedParameter, System
 from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind
 from grammar.semantics.types import CHAR, REAL, UNKNOWN, Type
@@ -71,7 +71,7 @@ class PredefinedCalls(CodeMaker):
         result = function.result
         if result == UNKNOWN and is_value:
             raise self._emitter.refuse(str(untyped_result(name)))
-        if is_builtin and not _fits(node, function):
+        if is_builtin and not function.takes(len(node.arguments)):
             raise self._emitter.fail("argument")
         if result is None or result == UNKNOWN:
             self._cross(name, parts, None, is_builtin=is_builtin)
@@ -192,8 +192,3 @@ class PredefinedCalls(CodeMaker):
         path = self._memory.pushed_path(place)
         self._memory.refer(kept)
         return Changed(Input(Mode.REF, self._emitter.number(value.type)), None, path)
-
-
-def _fits(node: ast.Call, function: PredefinedFunction) -> bool:
-    count, least = len(node.arguments), len(function.parameters)
-    return count >= least and (count == least or function.more is not None)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import get_args
 
 from grammar.semantics.assignability import assignable
-from grammar.semantics.types import BOOL, CHAR, INT, REAL, UNKNOWN, Array, Text, Type, is_same
+from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Text, Type, is_same
 from interp.bytecode.program import (
     Argument,
     Builtin,
@@ -173,12 +173,12 @@ class _Fit:
 
 def call_mismatch(program: Program, builtin: Builtin) -> str | None:
     """Return why an entry is no valid call of a predefined function, or ``None`` if it is one."""
-    known = BUILTINS.get(builtin.name.upper())
-    if known is None:
+    computing = BUILTINS.get(builtin.name.upper())
+    if computing is None:
         return "there is no such function that only computes"
-    least, given = len(known.parameters), len(builtin.parts)
-    if given < least or (given > least and known.more is None):
-        return f"it has {least} arguments, not {given}"
+    known = computing.declared
+    if not known.takes(len(builtin.parts)):
+        return f"it has {len(known.parameters)} arguments, not {len(builtin.parts)}"
     result = None if builtin.result is None else program.types[builtin.result]
     if result != known.result:
         return f"its result is {known.result or 'nothing'}"
@@ -187,9 +187,11 @@ def call_mismatch(program: Program, builtin: Builtin) -> str | None:
             continue
         is_changed = isinstance(part, Changed)
         type_ = _type_of(program, part.given if isinstance(part, Changed) else part)
-        if type_ is None or (is_changed and not known.is_out(place)):
+        parameter = known.parameter(place)
+        assert parameter is not None, "it takes so many"
+        if type_ is None or (is_changed and not parameter.is_out):
             return f"argument {place + 1} cannot be passed"
-        wanted = known.parameters[place].type if place < least else UNKNOWN
+        wanted = parameter.type
         fits = is_same(wanted, type_) if is_changed else assignable(wanted, type_).is_fine
         if not fits or not _is_written(program, part):
             return f"argument {place + 1} is not a {wanted}"
@@ -201,7 +203,7 @@ def may_be_missing(builtin: Builtin) -> Iterator[bool]:
 
     See `interp.values.builtins.reads_text`.
     """
-    parameters = BUILTINS[builtin.name.upper()].parameters
+    parameters = BUILTINS[builtin.name.upper()].declared.parameters
     for place, part in enumerate(builtin.parts):
         is_text = (
             place < len(parameters)

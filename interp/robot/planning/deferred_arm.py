@@ -7,10 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from interp.robot.arm import ArmEvent, Position
+    import numpy as np
+    import numpy.typing as npt
+
+    from interp.robot.arm import ArmEvent, Motion, Position, Samples
     from interp.robot.planning.planned_arm import PlannedArm
 
 
@@ -31,13 +34,25 @@ class DeferredArm:
         self._is_made = True
         return arm
 
-    def __getattr__(self, name: str) -> Any:
-        """Return what is not below from the other arm, which is made now."""
-        return getattr(self._arm, name)
+    def plan(self, now: int, motion: Motion) -> tuple[int, ...]:
+        """See `interp.robot.arm.Arm.plan`, here and below."""
+        return self._arm.plan(now, motion)
+
+    def mark(self) -> object:
+        """Return a mark for `rewind`."""
+        return self._arm.mark()
+
+    def rewind(self, mark: object) -> None:
+        """Undo plans."""
+        self._arm.rewind(mark)
 
     def next_event(self) -> ArmEvent | None:
         """``None`` as long as there was no motion."""
         return self._arm.next_event() if self._is_made else None
+
+    def take(self) -> ArmEvent:
+        """`next_event`, which has happened."""
+        return self._arm.take()
 
     def pending(self) -> int:
         """0 as long as there was no motion."""
@@ -46,6 +61,22 @@ class DeferredArm:
     def target(self) -> Position:
         """See `interp.robot.planning.planned_arm.PlannedArm.target`."""
         return self._arm.target()
+
+    def position(self, time: int) -> Position:
+        """Return the set-point."""
+        return self._arm.position(time)
+
+    def speed(self, time: int) -> float:
+        """Return the speed of the tool."""
+        return self._arm.speed(time)
+
+    def distances(self, time: int) -> tuple[float, float]:
+        """Travelled and left of the running motion."""
+        return self._arm.distances(time)
+
+    def sample(self, times: npt.NDArray[np.int64]) -> Samples:
+        """Set-points."""
+        return self._arm.sample(times)
 
     def forget(self, time: int) -> None:
         """Forget the path before a time."""
@@ -58,3 +89,15 @@ class DeferredArm:
             self._arm.override(now, percent)
         else:
             self._override = now, percent
+
+    def brake(self, now: int, is_hard: bool) -> None:
+        """Stop on the path."""
+        self._arm.brake(now, is_hard)
+
+    def proceed(self, now: int) -> None:
+        """Continue."""
+        self._arm.proceed(now)
+
+    def discard(self, now: int) -> None:
+        """Forget what is ahead."""
+        self._arm.discard(now)
