@@ -7,7 +7,7 @@ debugger.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 from interp.controller.state.trace import TaskName
 from interp.port.events import Sink
@@ -16,14 +16,32 @@ from interp.port.inspection import Breaks, Inspectable
 from interp.port.requests import At, CodeHandle, End, Fail, Request, Slice, StopAdvance, Value
 from interp.values.faults import Fault
 
-if TYPE_CHECKING:
-    from interp.debugging.debugger import Debugger
+
+class Hook(Protocol):
+    """What a debugger does with its executors."""
+
+    @property
+    def places(self) -> Breaks:
+        """The places that it wants to see."""
+        ...
+
+    def unseen(self, shows_places: bool, /) -> int:
+        """Return how many statements need not be shown."""
+
+    def begins(self, executor: DebuggedExecutor, /) -> int | None:
+        """See a statement that is about to begin; return the line of another one to select."""
+
+    def fails(self, executor: DebuggedExecutor, request: Fail, /) -> None:
+        """See a failure."""
+
+    def around(self, inside: Any, per_slice: int, task: TaskName, /) -> DebuggedExecutor:
+        """Return an executor around an `Inspectable` one, of another program."""
 
 
 class DebuggedExecutor:
     """Runs ``inside`` and shows ``hook`` the statements that it wants to see; see `Executor`."""
 
-    def __init__(self, hook: Debugger, task: TaskName, inside: Inspectable, per_slice: int) -> None:
+    def __init__(self, hook: Hook, task: TaskName, inside: Inspectable, per_slice: int) -> None:
         self.task: TaskName = task
         self.inside = inside
         self.at = At("", 0, 0)

@@ -13,8 +13,8 @@ from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import cells_of, size, value_at
-from interp.bytecode.vm.context import Rule, Rules, Site, computed
-from interp.bytecode.vm.state import Operation
+from interp.bytecode.vm.context import Rule, Rules, Site
+from interp.bytecode.vm.state import Operation, computed
 from interp.values.builtins import WEIGHTS
 from interp.values.faults import fault
 from interp.values.geometric_operator import composed

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Protocol
+from typing import Final, Protocol
 
 from interp.bytecode.program import Program
-from interp.bytecode.vm.state import OperandStack, Operation, State
-
-if TYPE_CHECKING:
-    from interp.bytecode.vm.services import Services
+from interp.bytecode.vm.services import Services
+from interp.bytecode.vm.state import Operation, State
 
 #: Makes an operation from the site and the operands of an instruction.
 Rule = Callable[..., Operation]
@@ -69,23 +67,3 @@ class Rules:
         self._state = runtime.state
         self._cells = runtime.state.cells
         self._stack = runtime.state.stack
-
-
-def computed(
-    compute: Callable[..., Any], count: int, stack: OperandStack, after: Operation
-) -> Operation:
-    """Return an operation that replaces one or two operands on the stack by a function of them."""
-    if count == 1:
-
-        def of_one() -> Operation:
-            stack[-1] = compute(stack[-1])
-            return after
-
-        return of_one
-
-    def of_two() -> Operation:
-        right = stack.pop()
-        stack[-1] = compute(stack[-1], right)
-        return after
-
-    return of_two

@@ -10,10 +10,9 @@ from grammar.semantics.types import REAL
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import shown
 from interp.bytecode.program import Argument, Code, Input, Instruction, Mode, Program
-from interp.bytecode.vm.context import computed
 from interp.bytecode.vm.names import Names
 from interp.bytecode.vm.request_marshalling import RequestBuilder
-from interp.bytecode.vm.state import Operation, State
+from interp.bytecode.vm.state import Operation, State, computed
 from interp.bytecode.vm.statement_budget import Counter, Guard, Pause
 from interp.bytecode.vm.value_marshalling import Block, Change, Entry, arguments_of
 from interp.port import requests

@@ -99,3 +99,23 @@ class State:
         self.request: Request | None = None
         self.completion: Completion | None = None
         self.site: object = None
+
+
+def computed(
+    compute: Callable[..., Any], count: int, stack: OperandStack, after: Operation
+) -> Operation:
+    """Return an operation that replaces one or two operands on the stack by a function of them."""
+    if count == 1:
+
+        def of_one() -> Operation:
+            stack[-1] = compute(stack[-1])
+            return after
+
+        return of_one
+
+    def of_two() -> Operation:
+        right = stack.pop()
+        stack[-1] = compute(stack[-1], right)
+        return after
+
+    return of_two

@@ -20,7 +20,7 @@ from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.compiler import compile_program
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm import executor as vm
-from interp.bytecode.vm.context import computed
+from interp.bytecode.vm.state import computed
 from interp.executors import Prepared
 from interp.port.requests import End, StopAdvance, Write
 from interp.program.load import Limits, load
