@@ -57,17 +57,42 @@ _ROBOTS = ("none", "kinematic", "mujoco")
 def evaluate(case: Case, seen: Observation) -> list[Check]:
     """Return the checks of a case in the order of its lines, then those of every case."""
     is_run = case.phase == "run"
+    if is_run and seen.watched is not None and (refused := list(_refusals(case, seen))):
+        return refused
     found = evaluate_run(case.expectations, seen) if is_run else _check_findings(case, seen)
     expected = [
         replace(check, is_sure=case.is_sure(one), basis=one.basis or case.basis)
         for check, one in zip(found, case.expectations, strict=True)
     ]
-    every = (
-        chain(_unexpected_outputs(case, seen), _unexpected_ending(case, seen))
-        if is_run
-        else _unexpected_errors(case, seen)
-    )
-    return [*expected, *every, *_law_violations(case, seen)]
+    ending = list(_unexpected_ending(case, seen)) if is_run else []
+    every = _unexpected_outputs(case, seen) if is_run else _unexpected_errors(case, seen)
+    if seen.watched is not None and any(not check.is_sure for check in ending):
+        begun = {(event.file, event.line) for event in seen.events}
+        expected = [
+            replace(check, is_sure=check.is_sure and (check.file, check.line) in begun)
+            for check in expected
+        ]
+    return [*expected, *every, *ending, *_law_violations(case, seen)]
+
+
+def _refusals(case: Case, seen: Observation) -> Iterator[Check]:
+    """Yield a check for each error for which a controller did not load a program to be run."""
+    for found in seen.findings:
+        if found.severity == "error":
+            actual = f"{found.code} {found.message}"
+            check = Check(found.file, found.line, "the program is loaded", "unmet", actual)
+            yield _resting_on(_said_of(case, seen, check), case, check)
+
+
+def _said_of(case: Case, seen: Observation, check: Check) -> list[Expectation]:
+    """Return what is expected at a line, or for a controller at the next line that says something.
+
+    A line about which nothing is said prepares what is: nothing else says that it is possible.
+    """
+    lines = [one.line for one in case.expectations if one.file == check.file]
+    later = [line for line in lines if line >= check.line]
+    line = min(later, default=check.line) if seen.watched is not None else check.line
+    return [one for one in case.expectations if (one.file, one.line) == (check.file, line)]
 
 
 def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
@@ -99,6 +124,9 @@ def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
 
 
 def _check_findings(case: Case, seen: Observation) -> list[Check]:
+    if seen.watched is not None:
+        anywhere = case.phase == "parse"
+        return [_check_recorded_finding(one, seen, anywhere) for one in case.expectations]
     return [_check_finding(one, seen) for one in case.expectations]
 
 
@@ -139,8 +167,6 @@ def _check(one: Expectation, state: State, actual: str = "") -> Check:
 
 
 def _check_finding(one: Expectation, seen: Observation) -> Check:
-    if seen.watched is not None:
-        return _check_recorded_finding(one, seen)
     there = [found for found in seen.findings if (found.file, found.line) == (one.file, one.line)]
     actual = "; ".join(f"{found.severity} {found.code}" for found in there) or "nothing"
     match one.kind:
@@ -158,16 +184,17 @@ def _check_finding(one: Expectation, seen: Observation) -> Check:
     return _check(one, "met" if is_met else "unmet", actual)
 
 
-def _check_recorded_finding(one: Expectation, seen: Observation) -> Check:
+def _check_recorded_finding(one: Expectation, seen: Observation, anywhere: bool) -> Check:
     """Check an expectation about findings against a recording of a real controller.
 
     A controller has its own numbers, so only the line is compared. It may report an error at the
-    first word of the next line, a syntax error anywhere in the file, and when the program runs what
-    we warn of, what has a number below 2000, or what is about interrupts, triggers and motions.
+    first word of the next line, one of syntax ``anywhere`` in the file, and when the program runs
+    what we warn of, what has a number below 2000, or what is about interrupts, triggers and
+    motions.
     """
     in_file = [each for each in seen.findings if each.file == one.file]
     places = (one.line, one.line + 1)
-    there = in_file if one.kind == "syntax" else [each for each in in_file if each.line in places]
+    there = [each for each in in_file if anywhere or each.line in places]
     actual = _listed(seen.findings) or "accepted"
     code = one.arguments[0] if one.arguments else ""
     if one.kind in ("note", "silent") or code.startswith("KRL6"):
@@ -206,7 +233,9 @@ def _unexpected_errors(case: Case, seen: Observation) -> Iterator[Check]:
         if found.severity == "error" and (found.file, found.line) not in expected:
             text = "no error but those expected"
             actual = f"{found.code} {found.message}"
-            yield Check(found.file, found.line, text, "unmet", actual, case.may_fail)
+            check = Check(found.file, found.line, text, "unmet", actual)
+            said = () if seen.watched is None else _said_of(case, seen, check)
+            yield _resting_on(said, case, check)
 
 
 def _unexpected_outputs(case: Case, seen: Observation) -> Iterator[Check]:
@@ -247,19 +276,18 @@ def _unexpected_ending(case: Case, seen: Observation) -> Iterator[Check]:
     for check in evaluate_ending(case.expectations, seen, case.main):
         if seen.ending == "crash":
             yield check
-            continue
-        causes = causes or tuple(
-            one for one in case.expectations if (one.file, one.line) == (check.file, check.line)
-        )
-        if causes:
-            yield _resting_on(causes, case, check)
         else:
-            yield replace(check, is_sure=case.may_fail)
+            yield _resting_on(causes or _said_of(case, seen, check), case, check)
 
 
 def _resting_on(causes: Sequence[Expectation], case: Case, check: Check) -> Check:
-    """Return a check with the basis of the surest of the expectations from which it follows."""
-    surest = max(causes, key=case.is_sure)
+    """Return a check with the basis of the surest of the expectations from which it follows.
+
+    Without any it is as sure as the case.
+    """
+    surest = max(causes, key=case.is_sure, default=None)
+    if surest is None:
+        return replace(check, is_sure=case.may_fail)
     return replace(check, is_sure=case.is_sure(surest), basis=surest.basis or case.basis)
 
 

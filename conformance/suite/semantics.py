@@ -94,7 +94,7 @@ _SOURCES = """\
 | T26 | huluic.cn/article/i1g6a9h3j1i951068.html: timers and flags, from Expert Programming |
 | T27 | news.eeworld.com.cn/robot/ic661686.html: interrupts |
 | T28 | m.elecfans.com, 1855831 and 1952046: $ERR and ON_ERROR_PROCEED, from a manual |
-| T29 | zlcrobot.com on motions to absolute targets, from a text of KUKA College |
+| T29 | zlcrobot.com on motions to absolute targets, from a text of KUKA College; on constants |
 | T30 to T32 | m.elecfans.com, 1990193, 2189475 and 1993339: numbers, logic, frames |
 | T33 | wxredian.com/art?id=b2ebd5a111fd52ab5c4cd7a9c9989972: relations |
 | T34 | blog.csdn.net/weixin_39973410/article/details/111205424: functions on texts |

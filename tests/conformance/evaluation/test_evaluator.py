@@ -11,6 +11,7 @@ from conformance.evaluation.verdicts import verdict_of
 from conformance.suite.case import Case
 from conformance.suite.expectations import read_expectation
 from grammar.syntax.source import Source
+from interp.controller.state.trace import KINDS
 
 
 def case(
@@ -180,6 +181,28 @@ def test_what_only_a_doubtful_clause_allows_may_end_the_program() -> None:
         events = event("line"), event("line", line=4), event("fault", line=line)
         found = evaluate(asked, Observation(events=events, ending="fault"))
         assert [is_sure] == [one.is_sure for one in found if one.state == "unmet"]
+
+
+def test_what_a_controller_refused_for_a_doubtful_clause_hides_the_rest() -> None:
+    """Of a line without a word the next says whether it is possible; what was begun still counts.
+
+    Our own executors owe all of it.
+    """
+    asked = case("runs 2", more={5: "runs 1 [ARI-12]", 6: "runs 1"})
+    events = event("line"), event("fault", line=4)
+    told = Observation(events=events, ending="fault", is_exact=False, watched=frozenset(KINDS))
+    for seen, sure in ((told, [3]), (replace(told, watched=None), [3, 6, 4])):
+        found = [one for one in evaluate(asked, seen) if one.state == "unmet"]
+        assert sure == [one.line for one in found if one.is_sure]
+
+
+@pytest.mark.parametrize(("line", "verdict"), [(4, "unconfirmed"), (6, "fail")])
+def test_a_program_that_a_controller_does_not_load(line: int, verdict: str) -> None:
+    """That it is loaded is as sure as what is expected at the line of the error, or behind it."""
+    asked = case("runs 1", more={5: "runs 1 [ARI-12]", 6: "runs 1"})
+    error = Finding("a.src", line, "error", "")
+    seen = Observation(findings=(error,), is_exact=False, watched=frozenset())
+    assert verdict == verdict_of(evaluate(asked, seen))[0]
 
 
 @pytest.mark.parametrize(
