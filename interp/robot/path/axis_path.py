@@ -289,10 +289,7 @@ class PosePathCurve:
         self.others = others
         self.grid, axes = self._points(start)
         self._table = UniformSpline(axes)
-        ends = np.concatenate((axes[[0, -1]], others.at(np.array([0.0, 1.0]))), axis=1)
-        self.start: Array
-        self.end: Array
-        self.start, self.end = ends
+        self.end: Array = np.concatenate((axes[-1], *others.at(np.ones(1))))
 
     def axes(self, u: Array) -> Array:
         """See `Curve.axes`."""

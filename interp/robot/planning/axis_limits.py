@@ -46,9 +46,9 @@ class AxisLimits:
         """Return limits scaled by percentages; one outside 0 to 100 counts as 100 [MOT-02]."""
         count = len(self.velocity)
         return AxisLimits(
-            self.velocity * _shares(velocity, count),
-            self.acceleration * _shares(acceleration, count),
-            self.jerk * _shares(jerk, count),
+            self.velocity * _shares(velocity[:count]),
+            self.acceleration * _shares(acceleration[:count]),
+            self.jerk * _shares(jerk[:count]),
             self.torques,
         )
 
@@ -79,6 +79,5 @@ def _dynamics(axis: Axis) -> Dynamics:
     return _LINEAR if axis.kind is AxisKind.LINEAR else _ROTARY
 
 
-def _shares(percents: Sequence[float], count: int) -> Array:
-    known = [percent / 100.0 if 0.0 < percent <= 100.0 else 1.0 for percent in percents[:count]]
-    return np.array(known + [1.0] * (count - len(known)))
+def _shares(percents: Sequence[float]) -> Array:
+    return np.array([one / 100.0 if 0.0 < one <= 100.0 else 1.0 for one in percents])

@@ -164,7 +164,7 @@ class _Clock:
         ]
         sums = np.cumsum([0.0, *(end - start for start, end in ends)])
         first = 0 if passage.into is None else 1
-        if part is not None and 0 < part + (not place.on_start) < len(passage.body):
+        if part is not None and part + (not place.on_start) < len(passage.body):
             origin = sums[first + part + (not place.on_start)]
         elif place.on_start:
             origin = sums[first]

@@ -50,7 +50,7 @@ def test_limits_are_those_of_the_machine_data(machine: MachineData) -> None:
 def test_percentages(machine: MachineData, percent: float, share: float) -> None:
     """A percentage that is none counts as all [MOT-02]."""
     limits = axis_limits(machine)
-    scaled = limits.scaled((percent,) * 12, (100.0,) * 12, ())
+    scaled = limits.scaled((percent,) * 12, (100.0,) * 12, (100.0,) * 12)
     assert limits.velocity * share == pytest.approx(scaled.velocity)
 
 
