@@ -13,7 +13,7 @@ from conformance.metamorphic.law import Attempt, Law, run_law
 from conformance.metamorphic.motion_programs import moving_program
 from conformance.metamorphic.subject import Program
 from conformance.suite.case import Case
-from grammar.generation.closed.programs import seeded
+from grammar.generation.programs import seeded
 from support.parallel.ordered_map import ordered_map
 
 #: All laws.

@@ -9,7 +9,7 @@ from __future__ import annotations
 from random import Random
 from typing import Final
 
-from grammar.generation.closed.programs import Sample
+from grammar.generation.programs import Sample
 
 #: The arm with its hand down, at X 445, Y 0, Z 810.
 _HOME: Final = "PTP {A1 0, A2 -90, A3 90, A4 0, A5 90, A6 0}"

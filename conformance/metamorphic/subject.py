@@ -17,7 +17,7 @@ from conformance.evaluation.execution import Setup, observe
 from conformance.evaluation.observation import Observation
 from conformance.metamorphic.tree_rewriting import Change, rewritten, routines, with_routines
 from conformance.suite.case import Case
-from grammar.generation.closed.programs import Sample
+from grammar.generation.programs import Sample
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source

@@ -18,7 +18,7 @@ from conformance.differential.runs import EXECUTORS, Prepared, trace_of
 from conformance.differential.traces import Fact
 from conformance.sensitivity.code_exchange import InvalidMutant, load
 from conformance.sensitivity.mutants import Mutant, drawn
-from grammar.generation.closed.programs import seeded
+from grammar.generation.programs import seeded
 from support.parallel.ordered_map import ordered_map
 
 #: What mutants are drawn from, in `conformance.sensitivity.mutated_code.PACKAGES`.

@@ -1,7 +1,7 @@
 """Blocks of statements: branches, loops, jumps, returns.
 
-In a closed style every loop is bounded, by its limits or by its own counter. As in `statements`, a
-rule writes into a `Code` and returns whether it could.
+Every loop is bounded, by its limits or by its own counter. As in `statements`, a rule writes into a
+`Code` and returns whether it could.
 """
 
 from __future__ import annotations
@@ -13,29 +13,29 @@ from grammar.generation.code import Code
 from grammar.generation.expressions import count, expression, operand, read, text, truth
 from grammar.generation.scope import Variable
 from grammar.generation.statements import assignment
+from grammar.generation.types import COLOUR, MODE
 from grammar.semantics.types import CHAR, INT, Array, Enumeration, Type
 
+#: The least remaining budget with which a block gets another statement.
+_RESERVE: Final = 12
+_SELECTORS: Final[tuple[Type, ...]] = (INT, CHAR, COLOUR, MODE, INT)
 #: Greatest depth of blocks in which a loop begins.
 _DEEPEST: Final = 5
-#: Stands for an unknown upper limit.
-_UNKNOWN: Final = 10_000
 
 
 def statement(code: Code) -> None:
-    """Write a statement of the style; an assignment if the drawn rule finds nothing to use."""
-    style, choices = code.style, code.choices
-    is_motion = code.moving > 0 and choices.chance(code.moving)
-    if not choices.weighted(style.moving if is_motion else style.statements)(code):
+    """Write a statement; an assignment if the drawn rule finds nothing to use."""
+    if not code.choices.weighted(code.style.statements)(code):
         assignment(code)
 
 
 def statements(code: Code, most: int | None = None) -> None:
     """Write the statements of a block, at most ``most``."""
-    choices, style = code.choices, code.style
+    choices = code.choices
     for _ in range(choices.between(1, most or code.size.statements)):
-        if code.left() < style.reserve:
+        if code.left() < _RESERVE:
             break
-        if style.jump_share and choices.chance(style.jump_share):
+        if choices.chance(4):
             _forward_jump(code)
         else:
             statement(code)
@@ -46,13 +46,11 @@ def statements(code: Code, most: int | None = None) -> None:
 
 def branch(code: Code) -> bool:
     """Write an IF."""
-    if code.level > code.style.deepest:
-        return False
     code.spend()
     code.line(f"IF {truth(code, code.choices.between(1, 2))} THEN")
     with code.indented():
         statements(code, 3)
-    if code.choices.chance(code.style.else_share):
+    if code.choices.chance(50):
         code.line("ELSE")
         with code.indented():
             statements(code, 3)
@@ -61,16 +59,16 @@ def branch(code: Code) -> bool:
 
 def switch(code: Code) -> bool:
     """Write a SWITCH over INT, CHAR or an enumeration [CTL-03, CTL-04]."""
-    choices, style = code.choices, code.style
-    type_ = style.selectors(code)
-    labels, most = _labels(type_), style.case_labels
+    choices = code.choices
+    type_ = choices.pick(_SELECTORS)
+    labels, most = _labels(type_), 3
     if is_long := type_ == INT and choices.chance(40):  # so long that a machine may use a table
         labels, most = [str(number) for number in range(-2, 28)], 30
-    if type_ == INT and style.is_closed:
+    if type_ == INT:
         selector: str | None = f"({expression(code, INT, 1)}) B_AND 3"
     else:
         selector = read(code, type_)
-    if selector is None or code.level > style.deepest:
+    if selector is None:
         return False
     names = [
         one.variable.name for one in code.scope.places(type_).all if _is_constant(one.variable)
@@ -78,12 +76,12 @@ def switch(code: Code) -> bool:
     code.spend()
     code.line(f"SWITCH {selector}")
     left = list(labels)
-    while left and (len(left) == len(labels) or choices.chance(style.case_share)):
+    while left and (len(left) == len(labels) or choices.chance(65)):
         count_ = choices.between(min(len(left), 12 if is_long else 1), min(len(left), most))
         given, left = left[:count_], left[count_:]
-        if names and style.is_closed and choices.chance(20):
+        if names and choices.chance(20):
             given.append(choices.pick(names))
-        code.line(f"CASE {code.layout.comma.join(given)}")
+        code.line(f"CASE {', '.join(given)}")
         with code.indented():
             statements(code, 2)
     if choices.chance(60):
@@ -110,8 +108,6 @@ def _is_constant(variable: Variable) -> bool:
 
 def _times(code: Code) -> int:
     """Return how often a loop is to run; 0 if the budget has no room for one."""
-    if not code.style.is_closed:
-        return code.choices.between(2, 12) if code.level <= code.style.deepest else 0
     room = code.left() // 12
     if code.loops >= 3 or code.level > _DEEPEST or room < 1:
         return 0
@@ -131,12 +127,11 @@ def loop_for(code: Code) -> bool:
     if not times or not spare:
         return False
     name = choices.pick(spare)
-    limits = _closed_limits if code.style.is_closed else _open_limits
-    begin, end, step, low, high, times = limits(code, times)
+    begin, end, step, low, high, times = _limits(code, times)
     written = "" if step == 1 and choices.chance(60) else f" STEP {step}"
     code.spend(2)
     with (
-        code.block(f"FOR {name}{code.layout.eq}{begin} TO {end}{written}", "ENDFOR"),
+        code.block(f"FOR {name}={begin} TO {end}{written}", "ENDFOR"),
         code.repeated(times + 1),
     ):
         code.spend()
@@ -146,10 +141,7 @@ def loop_for(code: Code) -> bool:
     return True
 
 
-_Limits = tuple[str, str, int, int, int, int]
-
-
-def _closed_limits(code: Code, times: int) -> _Limits:
+def _limits(code: Code, times: int) -> tuple[str, str, int, int, int, int]:
     """Return first and last value, step, least and greatest value, and number of passes."""
     choices = code.choices
     first, step = choices.pick((1, 1, 1, 0, -2)), choices.pick((1, 1, 1, 2, -1, -3))
@@ -168,26 +160,9 @@ def _closed_limits(code: Code, times: int) -> _Limits:
     return begin, end, step, low, high, times
 
 
-def _open_limits(code: Code, times: int) -> _Limits:
-    """Return the same for an open style: mostly from one upwards."""
-    choices = code.choices
-    way = choices.below(100)
-    if way < 10:
-        return str(times), "1", -1, 1, times, 1
-    if way < 20:
-        return "1", read(code, INT) or "$NUM_AX", 1, 1, _UNKNOWN, 1
-    return "1", str(times), choices.pick((1,) * 12 + (2,)), 1, times, 1
-
-
 def _counted(code: Code) -> tuple[str, int] | None:
-    """Set an unused counter to zero; return its name and the number of passes.
-
-    In an open style the name is empty, because a condition alone ends the loop.
-    """
-    times = _times(code)
-    if not code.style.is_closed:
-        return ("", 1) if times else None
-    spare = _spare(code)
+    """Set an unused counter to zero; return its name and the number of passes."""
+    times, spare = _times(code), _spare(code)
     if not times or not spare:
         return None
     name = code.choices.pick(spare)
@@ -239,30 +214,24 @@ def loop(code: Code) -> bool:
         code.spend(4)
         _count(code, name, times)
         statements(code, 3)
-        code.guarded(f"{name}>={times}" if name else truth(code, 1), "EXIT")
+        code.guarded(f"{name}>={times}", "EXIT")
     return True
 
 
 def _both(code: Code, bound: str, word: str) -> str:
-    """Return the condition of a loop: its bound, sometimes joined with a random condition.
-
-    In an open style there is no bound.
-    """
-    if not code.style.is_closed:
-        return truth(code)
+    """Return the condition of a loop: its bound, sometimes joined with a random condition."""
     return f"({bound}) {word} ({truth(code, 1)})" if code.choices.chance(40) else bound
 
 
 def _count(code: Code, name: str, times: int, low: int = 1) -> None:
-    if name:
-        count(code, name, low, times)
-        code.spend()
-        code.set(name, f"{name}+1")
+    count(code, name, low, times)
+    code.spend()
+    code.set(name, f"{name}+1")
 
 
 def _leave(code: Code) -> None:
     """Write an EXIT sometimes."""
-    if code.choices.chance(code.style.exit_share):
+    if code.choices.chance(12):
         code.spend(2)
         code.guarded(truth(code, 1), "EXIT")
 
@@ -272,7 +241,7 @@ def _leave(code: Code) -> None:
 
 def _forward_jump(code: Code) -> None:
     """Write a GOTO to a later label, in the same block or out of blocks [CTL-07]."""
-    label = code.names.label()
+    label = code.names.new("L")
     code.spend(2)
     way = code.choices.below(3)
     found = _counted(code) if way == 2 else None
@@ -298,16 +267,16 @@ def backward_jump(code: Code) -> bool:
     if found is None:
         return False
     name, times = found
-    label = code.names.label()
+    label = code.names.new("L")
     code.line(f"{label}:")
     with code.repeated(times, is_loop=False):
         code.spend(3)
         _count(code, name, times, low=0)
         statements(code, 3)
-        return code.guarded(f"{name}<{times}" if name else truth(code), f"GOTO {label}")
+        return code.guarded(f"{name}<{times}", f"GOTO {label}")
 
 
-def give_back(code: Code) -> bool:
+def conditional_return(code: Code) -> bool:
     """Write a conditional RETURN [CTL-09]."""
     if code.loops and code.choices.chance(50):
         return False
@@ -325,6 +294,6 @@ def returned(code: Code) -> bool:
     if isinstance(result, Array):
         return code.line(f"RETURN {text(code)}")
     value = expression(code, result, 2)
-    if result == INT and code.style.is_closed:
+    if result == INT:
         value = f"({value}) B_AND 1023"
     return code.line(f"RETURN {value}")

@@ -1,24 +1,37 @@
 """Expressions of a given type, from operators, the visible variables, and calls.
 
-Relations bind most weakly in KRL and are put in parentheses as operands [ARI-05, ARI-06]. In closed
-programs most numbers stay small, so that most programs run to their end without a fault.
+Relations bind most weakly in KRL and are put in parentheses as operands [ARI-05, ARI-06]. Most
+numbers stay small, so that most programs run to their end without a fault.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Final
 
+from grammar.generation import literals
+from grammar.generation.choices import Weighted
 from grammar.generation.code import Code, Counter, ExpressionRule
-from grammar.generation.literals import POSES, TEXT, Path
+from grammar.generation.literals import POSES, TEXT, Path, predefined
 from grammar.generation.scope import Parameter, Place, Places, Routine, Variable
+from grammar.generation.types import COLOUR, MODE
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Structure, Type
 
 _ORDERS: Final = ("==", "<>", "<", ">", "<=", ">=", "=>", "=<")
 _EQUAL: Final = ("==", "<>")
 #: A depth of recursion at which the program stack overflows.
 _TOO_DEEP: Final = 70
+_VAR_STATE: Final = predefined("VAR_STATE")
+_ENUMERATIONS: Final = Weighted[Type](
+    (4, COLOUR),
+    (2, MODE),
+    (2, _VAR_STATE),
+    (2, predefined("VAR_TYPE")),
+    (1, predefined("ORI_TYPE")),
+    (1, predefined("MODE_OP")),
+    (1, predefined("CASE_SENSE_T")),
+)
 _ATOM: Final = re.compile(r"[\w.$]+(\[[\w.,$+]*\][\w.]*)?")
 
 
@@ -26,8 +39,8 @@ _ATOM: Final = re.compile(r"[\w.$]+(\[[\w.,$+]*\][\w.]*)?")
 
 
 def constant(code: Code, type_: Type, *, is_signed: bool = True) -> str:
-    """Return a constant of the style."""
-    return code.style.literals.constant(code.choices, type_, is_signed=is_signed)
+    """Return a constant."""
+    return literals.constant(code.choices, type_, is_signed=is_signed)
 
 
 def _index(code: Code, size: int) -> str:
@@ -37,7 +50,7 @@ def _index(code: Code, size: int) -> str:
         # The checker finds what lies outside if it is a constant.
         wrong = choices.pick(("-1", "0", str(size + 1), "100"))
         return f"{wrong}+0*{code.passes[0]}"
-    way = choices.below(20 if code.style.is_closed else 16)
+    way = choices.below(20)
     fitting = [one.name for one in code.counters if one.low >= 1 and one.high <= size]
     if 10 <= way < 16 and fitting:
         return choices.pick(fitting)
@@ -67,13 +80,11 @@ def read(code: Code, type_: Type) -> str | None:
 
 
 def _one_of(code: Code, places: Places) -> str | None:
-    """Return a random place: a whole variable, any place, or a place of a random variable."""
-    choices, style = code.choices, code.style
+    """Return a random place: any place, or a place of a random variable."""
+    choices = code.choices
     if not places.holders:
         return None
-    if style.whole_share and places.whole and choices.chance(style.whole_share):
-        return choices.pick(places.whole).name
-    if style.any_place_share and choices.chance(style.any_place_share):
+    if choices.chance(50):
         place = choices.pick(places.all)
         return _written(code, place.variable, place.path)
     variable, paths = choices.pick(places.holders)
@@ -82,13 +93,8 @@ def _one_of(code: Code, places: Places) -> str | None:
 
 def atom(code: Code, type_: Type) -> str:
     """Return a variable or a constant."""
-    choices, style = code.choices, code.style
-    if type_ in style.atoms:
-        share, rules = style.atoms[type_]
-        if choices.chance(share):
-            return choices.weighted(rules)(code, 0)
-    share = style.truth_share if type_ == BOOL else style.variable_share
-    if choices.chance(share):
+    choices = code.choices
+    if choices.chance(70):
         if type_ == INT and code.counters and choices.chance(25):
             return choices.pick(code.counters).name
         found = read(code, type_)
@@ -110,18 +116,23 @@ def count(code: Code, name: str, low: int, high: int) -> None:
 # ------------------------------------------------------------------------- calls
 
 
+def call_text(name: str, arguments: Iterable[str]) -> str:
+    """Return a call as a statement or as part of an expression."""
+    return f"{name}({', '.join(arguments)})"
+
+
 def call_of(code: Code, routine: Routine) -> str:
     """Return a call; its cost is counted at the current place."""
     if not routine.deepest:
         code.spend(routine.cost)
-        return code.layout.call(routine.name, _arguments(code, routine.parameters))
+        return call_text(routine.name, _arguments(code, routine.parameters))
     deepest = max(min(code.left() // routine.cost - 1, routine.deepest), 1)
     bound = code.choices.between(1, min(deepest, 6))
     if deepest > _TOO_DEEP and code.risks():
         bound = _TOO_DEEP
     code.spend(routine.cost * (bound + 1))
     given = _arguments(code, routine.parameters[1:])
-    return code.layout.call(routine.name, [str(bound), *given])
+    return call_text(routine.name, [str(bound), *given])
 
 
 def _arguments(code: Code, parameters: Sequence[Parameter]) -> list[str]:
@@ -130,8 +141,8 @@ def _arguments(code: Code, parameters: Sequence[Parameter]) -> list[str]:
 
 def argument(code: Code, type_: Type, *, is_out: bool) -> str:
     """Return an argument; for a parameter :OUT nearly always a variable."""
-    choices, style = code.choices, code.style
-    if style.omitted_share and choices.chance(style.omitted_share):
+    choices = code.choices
+    if choices.chance(1):
         return ""  # left out [SCO-13]
     if isinstance(type_, Array):
         return text(code) if not is_out and type_ == TEXT else array(code, type_)
@@ -141,8 +152,6 @@ def argument(code: Code, type_: Type, *, is_out: bool) -> str:
             return place
     if is_out or type_ not in (INT, REAL):
         return expression(code, type_, 1)
-    if not style.is_closed:
-        return atom(code, type_)
     return expression(code, choices.pick((type_, type_, type_, type_, INT, REAL)), 1)
 
 
@@ -181,13 +190,11 @@ def expression(code: Code, type_: Type, depth: int) -> str:
         return atom(code, type_)
     choices, style = code.choices, code.style
     way = choices.below(100)
-    if way < style.atom_share:
-        return atom(code, type_)
-    if style.operator_share <= way < style.operator_share + style.call_share:
+    if 75 <= way < 84:
         found = code.scope.callable(type_, code.left() - 1)
         if found:
             return call_of(code, choices.pick(found))
-    elif way >= style.operator_share and type_ in style.functions:
+    elif way >= 84 and type_ in style.functions:
         return choices.weighted(style.functions[type_])(code, depth)
     if type_ in style.expressions:
         return choices.weighted(style.expressions[type_])(code, depth)
@@ -218,7 +225,7 @@ def divisor(code: Code, type_: Type) -> str:
     choices = code.choices
     if code.risks():
         return choices.pick(("0", atom(code, type_)))
-    if code.style.is_closed and choices.chance(30):
+    if choices.chance(30):
         return f"(({atom(code, INT)} B_AND 7)+1)"
     return choices.pick(("2", "3", "(-2)", "7") if type_ == INT else ("2.0", "0.3", "4", "1.5"))
 
@@ -237,7 +244,7 @@ def chain(type_: Type) -> ExpressionRule:
                 right = str(choices.between(0, 4))
             else:
                 right = atom(code, type_)
-            found = code.layout.binary(found, sign, right)
+            found = f"{found} {sign} {right}"
         return found
 
     return rule
@@ -257,8 +264,7 @@ def pose(type_: Structure) -> ExpressionRule:
         if choices.chance(45):
             return atom(code, type_)
         frames = [_frame(code, choices.pick(POSES)) for _ in range(choices.between(1, depth))]
-        gap = code.layout.gap
-        return f"{gap}:{gap}".join([*frames, _frame(code, type_)])
+        return " : ".join([*frames, _frame(code, type_)])
 
     return rule
 
@@ -269,14 +275,14 @@ def _frame(code: Code, type_: Structure) -> str:
     found = read(code, type_)
     if found is None or choices.chance(15):
         return f"{{{type_.name}: X 1.0,Y {constant(code, REAL)},Z 3.0,A 10.0,B 0.0,C -90.0}}"
-    return f"({found})" if code.style.is_closed and choices.chance(10) else found
+    return f"({found})" if choices.chance(10) else found
 
 
 # ------------------------------------------------------------------------- relations
 
 
 def relation(code: Code, depth: int) -> str:
-    """Return a comparison by one of the style's rules [ARI-10]."""
+    """Return a comparison by one of the rules [ARI-10]."""
     return code.choices.weighted(code.style.relations)(code, depth)
 
 
@@ -297,10 +303,12 @@ def letter_comparison(code: Code, _depth: int) -> str:
 def constant_comparison(code: Code, depth: int) -> str:
     """Return a comparison of enumeration values, also predefined ones."""
     choices, style = code.choices, code.style
-    type_ = style.compared(code)
+    type_ = choices.weighted(_ENUMERATIONS)
+    if type_ not in style.functions and not code.scope.places(type_).holders:
+        type_ = _VAR_STATE
     functions = style.functions.get(type_)
     left = choices.weighted(functions)(code, depth) if functions else read(code, type_)
     if left is None:
         return f"{atom(code, BOOL)}==TRUE"
     right = read(code, type_) if choices.chance(30) else None
-    return code.layout.binary(left, choices.pick(_EQUAL), right or constant(code, type_))
+    return f"{left} {choices.pick(_EQUAL)} {right or constant(code, type_)}"

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
 from functools import cache
 from itertools import product
 from typing import Final
@@ -75,88 +74,84 @@ def declarator(type_: Type, name: str, *, is_open: bool = False) -> str:
     return f"{name}[{','.join('' if is_open or n is None else str(n) for n in type_.sizes)}]"
 
 
-@dataclass(frozen=True, slots=True)
-class Literals:
-    """Constants to choose from, and how often they take one form or another, in percent.
+_INTEGERS: Final = (
+    *("0", "1", "2", "3", "4", "5", "7", "8", "10", "12", "31", "64", "100", "255", "1000"),
+    *("'B101'", "'HF'", "'H7F'", "'B0110'", "32767"),
+)
+#: Integers that are rarely drawn.
+_LARGE: Final = (
+    *("2147483647", "16777217", "'HFFFFFFFF'", "'H80000000'", "65536", "1073741824"),
+    "99999999",
+)
+_REALS: Final = (
+    *("0.0", "0.5", "1.0", "1.5", "2.0", "0.1", "3.25", "10.0", "45.0", "90.0", "0.25"),
+    *("100.0", "2.5", "3.5", "0.333333333", "1.0E-3", "2.5E+2", "12.3456789", "180.0"),
+    *("7.0E1", "1.0E-45"),
+)
+_LETTERS: Final = "AZaz09 +.x"
+_TEXTS: Final = (
+    *("", "A", "abc", "KRL", "a b", "12", "-7", "3.5", "xyz12", "TRUE", "Hello World"),
+    *(" 7 ", "+1.E5", "1e400", "2147483648", "-2147483648", "0x1F", "tRuE", ".5e-3 9"),
+)
 
-    ``large`` are integers that are rarely drawn; ``negative_integers`` and ``negative_reals`` are
-    the shares with a sign. ``named`` is the share of aggregates with a type prefix, ``incomplete``
-    the share of components that are left out. ``makers`` generate the values of some types, by type
-    name.
-    """
 
-    integers: tuple[str, ...]
-    reals: tuple[str, ...]
-    texts: tuple[str, ...]
-    letters: str
-    large: tuple[str, ...] = ()
-    negative_integers: int = 15
-    negative_reals: int = 20
-    named: int = 25
-    incomplete: int = 0
-    comma: str = ","
-    makers: Mapping[str, Callable[[Choices], str]] = field(default_factory=dict)
+def constant(choices: Choices, type_: Type, *, is_signed: bool = True) -> str:
+    """Return a constant; ``is_signed`` says that a sign may precede it."""
+    if type_ == INT:
+        text = choices.pick(_LARGE if choices.chance(3) else _INTEGERS)
+        is_negative = is_signed and text.isdigit() and choices.chance(15)
+        return f"-{text}" if is_negative else text
+    if type_ == REAL:
+        text = choices.pick(_REALS)
+        return f"-{text}" if is_signed and choices.chance(20) else text
+    if type_ == BOOL:
+        return choices.pick(("TRUE", "FALSE"))
+    if type_ == CHAR:
+        return f'"{choices.pick(_LETTERS)}"'
+    if isinstance(type_, Enumeration):
+        return f"#{choices.pick(type_.constants)}"
+    if isinstance(type_, Structure):
+        return _aggregate(choices, type_)
+    assert isinstance(type_, Array), type_
+    return f'"{choices.pick(_TEXTS)}"'
 
-    def constant(self, choices: Choices, type_: Type, *, is_signed: bool = True) -> str:
-        """Return a constant; ``is_signed`` says that a sign may precede it."""
-        if type_ == INT:
-            pool = self.large if self.large and choices.chance(3) else self.integers
-            text = choices.pick(pool)
-            is_negative = is_signed and text.isdigit() and choices.chance(self.negative_integers)
-            return f"-{text}" if is_negative else text
-        if type_ == REAL:
-            text = choices.pick(self.reals)
-            return f"-{text}" if is_signed and choices.chance(self.negative_reals) else text
-        if type_ == BOOL:
-            return choices.pick(("TRUE", "FALSE"))
-        if type_ == CHAR:
-            return f'"{choices.pick(self.letters)}"'
-        if isinstance(type_, Enumeration):
-            return f"#{choices.pick(type_.constants)}"
-        if isinstance(type_, Structure):
-            return self.aggregate(choices, type_)
-        assert isinstance(type_, Array), type_
-        return f'"{choices.pick(self.texts)}"'
 
-    def aggregate(self, choices: Choices, type_: Structure, *, is_full: bool = False) -> str:
-        """Return an aggregate; its first component is always present, the others nearly always."""
-        maker = self.makers.get(type_.name)
-        if maker is not None:
-            return maker(choices)
-        written: list[str] = []
-        for place, member in enumerate(type_.members):
-            if place and not is_full and self.incomplete and choices.chance(self.incomplete):
-                continue
-            if isinstance(member.type, Array):
-                written += self._elements(choices, member.name, member.type)
-            elif isinstance(member.type, Structure):
-                value = self.aggregate(choices, member.type, is_full=is_full)
-                written.append(f"{member.name} {value}")
-            else:
-                written.append(f"{member.name} {self.constant(choices, member.type)}")
-        prefix = f"{type_.name}: " if choices.chance(self.named) else ""
-        return f"{{{prefix}{self.comma.join(written)}}}"
+def _aggregate(choices: Choices, type_: Structure, *, is_full: bool = False) -> str:
+    """Return an aggregate; its first component is always present, the others nearly always."""
+    written: list[str] = []
+    for place, member in enumerate(type_.members):
+        if place and not is_full and choices.chance(1):
+            continue
+        if isinstance(member.type, Array):
+            written += _elements(choices, member.name, member.type)
+        elif isinstance(member.type, Structure):
+            value = _aggregate(choices, member.type, is_full=is_full)
+            written.append(f"{member.name} {value}")
+        else:
+            written.append(f"{member.name} {constant(choices, member.type)}")
+    prefix = f"{type_.name}: " if choices.chance(25) else ""
+    return f"{{{prefix}{','.join(written)}}}"
 
-    def _elements(self, choices: Choices, name: str, type_: Array) -> list[str]:
-        if type_.is_text:
-            return [f"{name}[] {self.constant(choices, type_)}"]
-        return [
-            f"{name}[{index}] {self.constant(choices, type_.element)}" for index in elements(type_)
-        ]
 
-    def initialisation(self, choices: Choices, type_: Type, name: str) -> list[tuple[str, str]]:
-        """Return targets and constants that together initialise all of a variable [TYP-10]."""
-        if isinstance(type_, Structure):
-            return [(name, self.aggregate(choices, type_, is_full=True))]
-        if not isinstance(type_, Array):
-            return [(name, self.constant(choices, type_))]
-        if type_.is_text:
-            return [(f"{name}[]", self.constant(choices, type_))]
-        if type_.element == CHAR:
-            rows = elements(Array(CHAR, type_.sizes[:-1]))
-            return [(f"{name}[{row},]", self.constant(choices, TEXT)) for row in rows]
-        return [
-            found
-            for index in elements(type_)
-            for found in self.initialisation(choices, type_.element, f"{name}[{index}]")
-        ]
+def _elements(choices: Choices, name: str, type_: Array) -> list[str]:
+    if type_.is_text:
+        return [f"{name}[] {constant(choices, type_)}"]
+    return [f"{name}[{index}] {constant(choices, type_.element)}" for index in elements(type_)]
+
+
+def initialisation(choices: Choices, type_: Type, name: str) -> list[tuple[str, str]]:
+    """Return targets and constants that together initialise all of a variable [TYP-10]."""
+    if isinstance(type_, Structure):
+        return [(name, _aggregate(choices, type_, is_full=True))]
+    if not isinstance(type_, Array):
+        return [(name, constant(choices, type_))]
+    if type_.is_text:
+        return [(f"{name}[]", constant(choices, type_))]
+    if type_.element == CHAR:
+        rows = elements(Array(CHAR, type_.sizes[:-1]))
+        return [(f"{name}[{row},]", constant(choices, TEXT)) for row in rows]
+    return [
+        found
+        for index in elements(type_)
+        for found in initialisation(choices, type_.element, f"{name}[{index}]")
+    ]

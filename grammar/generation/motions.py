@@ -7,8 +7,18 @@ from __future__ import annotations
 
 from typing import Final
 
+from grammar.generation.choices import Weighted
 from grammar.generation.code import Code
-from grammar.generation.expressions import atom, constant, expression, operand, target, truth
+from grammar.generation.expressions import (
+    atom,
+    call_text,
+    constant,
+    expression,
+    operand,
+    target,
+    truth,
+)
+from grammar.generation.literals import AXIS_TYPES, POSES
 from grammar.generation.patterns import output, pattern
 from grammar.generation.scope import Routine
 from grammar.motion_kinds import PTP_SPLINE_SEGMENTS, SPLINE_SEGMENTS
@@ -18,16 +28,40 @@ _PRIORITIES: Final = ("1", "4", "20", "39", "81", "-1")
 _NUMBERS: Final = (1, 2, 4, 5, 10, 39, 81, 128)
 _SINGLE: Final = ("SPTP", "SLIN", "SCIRC", "SPTP_REL", "SLIN_REL", "SCIRC_REL")
 
+_MOTIONS: Final = Weighted(
+    *((4, "PTP"), (4, "LIN"), (2, "CIRC"), (1, "PTP_REL"), (2, "LIN_REL"), (1, "CIRC_REL")),
+    (1, "ASYPTP"),
+)
+_CRITERIA: Final = (
+    *("", "", "", " C_PTP", " C_DIS", " C_ORI", " C_VEL", " C_PTP C_DIS", " C_DIS C_ORI"),
+)
+AXES_OF_ROBOT: Final = "A1 0.0,A2 -90.0,A3 90.0,A4 0.0,A5 {0},A6 0.0"
+
 
 # ------------------------------------------------------------------------- single motions
 
 
+def _goal(code: Code, kind: str) -> str:
+    """Return a motion target: an aggregate, a variable, composed frames, or a function call."""
+    choices = code.choices
+    is_axis = "PTP" in kind
+    if choices.chance(40):
+        if is_axis and choices.chance(50):
+            return "{" + AXES_OF_ROBOT.format(constant(code, REAL)) + "}"
+        more = choices.pick(("", ",S 2,T 35", ",S 6,T 27,E1 0.0"))
+        return f"{{X {constant(code, REAL)},Y 0.0,Z 900.0,A 0.0,B 90.0,C 0.0{more}}}"
+    if is_axis and choices.chance(30):
+        return atom(code, choices.pick(AXIS_TYPES))
+    found = expression(code, choices.pick(POSES), 2)
+    return f"({found})" if choices.chance(10) else found
+
+
 def motion_text(code: Code, kind: str) -> str:
     """Return a motion of a kind, without its blending criterion."""
-    choices, style = code.choices, code.style
-    text = f"{kind} {style.goal(code, kind)}"
+    choices = code.choices
+    text = f"{kind} {_goal(code, kind)}"
     if "CIRC" in kind:
-        text += f",{code.layout.gap}{style.goal(code, kind)}"
+        text += f", {_goal(code, kind)}"
         if choices.chance(40 if kind[0] == "S" else 50):
             text += f", CA {expression(code, REAL, 1)}"
     return text
@@ -35,12 +69,12 @@ def motion_text(code: Code, kind: str) -> str:
 
 def motion(code: Code) -> bool:
     """Write a PTP, LIN, CIRC, a relative one, or a motion of asynchronous axes."""
-    choices, style = code.choices, code.style
+    choices = code.choices
     code.spend()
-    kind = choices.weighted(style.motions)
+    kind = choices.weighted(_MOTIONS)
     if kind == "ASYPTP":
         return code.line(f"ASYPTP {{E1 {constant(code, REAL)}}}")
-    text = motion_text(code, kind) + style.blend(code, kind)
+    text = motion_text(code, kind) + choices.pick(_CRITERIA)
     if kind in ("LIN_REL", "CIRC_REL"):
         text += choices.pick(("", " #BASE", " #TOOL"))
     return code.line(text)
@@ -48,7 +82,7 @@ def motion(code: Code) -> bool:
 
 def spline_motion(code: Code) -> bool:
     """Write a single SPTP, SLIN or SCIRC; not in interrupt routines [SPL-11]."""
-    if code.part.is_action or not code.style.has_splines:
+    if code.part.is_action:
         return False
     kind = code.choices.pick(_SINGLE)
     code.spend()
@@ -71,8 +105,8 @@ def _with(code: Code, percent: int) -> str:
 _VALUES: Final = tuple(
     pattern(text)
     for text in (
-        *("$VEL.CP:=<REAL>", "$ORI_TYPE:=#CONSTANT", "$VEL_AXIS[<1-6>]:=50"),
-        *("$BASE:=<atom FRAME>", "$ACC.CP:=<constant REAL>"),
+        *("$VEL.CP=<REAL>", "$ORI_TYPE=#CONSTANT", "$VEL_AXIS[<1-6>]=50"),
+        *("$BASE=<atom FRAME>", "$ACC.CP=<constant REAL>"),
     )
 )
 
@@ -82,7 +116,7 @@ _VALUES: Final = tuple(
 
 def spline_block(code: Code) -> bool:
     """Write a SPLINE or PTP_SPLINE [SPL-01]."""
-    if code.part.is_action or not code.style.has_splines:
+    if code.part.is_action:
         return False
     choices = code.choices
     is_axis = choices.chance(25)
@@ -98,9 +132,9 @@ def spline_block(code: Code) -> bool:
         for _ in range(choices.between(1, 4)):
             _item(code, edges, is_axis=is_axis, is_timed=is_timed)
         if is_timed:
-            code.line(f"TIME_BLOCK END{code.layout.eq}{expression(code, REAL, 1)}")
+            code.line(f"TIME_BLOCK END={expression(code, REAL, 1)}")
         elif edges == ["END"]:
-            code.line(f"CONST_VEL END{code.layout.eq}{_distance(code)}")
+            code.line(f"CONST_VEL END={_distance(code)}")
     return code.line(f"ENDSPLINE{choices.pick(('', '', ' C_SPL'))}")
 
 
@@ -109,17 +143,17 @@ def _item(code: Code, edges: list[str], *, is_axis: bool, is_timed: bool) -> Non
 
     ``edges`` are the edges of the CONST_VEL range that have not been written yet.
     """
-    choices, eq = code.choices, code.layout.eq
+    choices = code.choices
     way = choices.below(10)
     if way < 2:
-        code.line(f"TRIGGER WHEN PATH{eq}{_distance(code)}{_onstart(code)} {_triggered(code)}")
+        code.line(f"TRIGGER WHEN PATH={_distance(code)}{_onstart(code)} {_triggered(code)}")
     elif way == 2 and not is_axis:
         path, condition = f"{_distance(code)}{_onstart(code)}", truth(code)
-        code.line(f"STOP WHEN PATH{eq}{path} IF {condition}")
+        code.line(f"STOP WHEN PATH={path} IF {condition}")
     elif way == 3 and is_timed:
-        code.line(f"TIME_BLOCK PART{eq}{expression(code, REAL, 1)}")
+        code.line(f"TIME_BLOCK PART={expression(code, REAL, 1)}")
     elif way == 3 and not is_axis and edges:
-        code.line(f"CONST_VEL {edges.pop()}{eq}{_distance(code)}{_onstart(code)}")
+        code.line(f"CONST_VEL {edges.pop()}={_distance(code)}{_onstart(code)}")
     code.line(_segment(code, choices.pick(PTP_SPLINE_SEGMENTS if is_axis else SPLINE_SEGMENTS)))
 
 
@@ -136,24 +170,24 @@ def _onstart(code: Code) -> str:
 
 def _triggered(code: Code) -> str:
     """Return the end of a trigger: delay, action, priority."""
-    choices, eq = code.choices, code.layout.eq
+    choices = code.choices
     delay = choices.pick(("0", "20", "-10.5", f"{operand(code, INT, 1)} B_AND 255"))
     actions = code.scope.actions()
     if actions and choices.chance(50):
         called = action_call(code, choices.pick(actions))
-        return f"DELAY{eq}{delay} DO {called} PRIO{eq}{choices.pick(_PRIORITIES)}"
+        return f"DELAY={delay} DO {called} PRIO={choices.pick(_PRIORITIES)}"
     way = choices.below(3)
     action = None
     if way == 0:
         found = target(code, INT, is_local=False)
         if found is not None:
-            action = f"{found}{eq}{expression(code, INT, 1)}"
+            action = f"{found}={expression(code, INT, 1)}"
     if way == 1:
-        action = code.layout.call("PULSE", (output(code), "TRUE", "0.2"))
+        action = f"PULSE({output(code)}, TRUE, 0.2)"
     if action is None:
         value = choices.pick(("TRUE", "FALSE", truth(code, 1)))
-        action = f"{output(code)}{eq}{value}"
-    return f"DELAY{eq}{delay} DO {action}"
+        action = f"{output(code)}={value}"
+    return f"DELAY={delay} DO {action}"
 
 
 def action_call(code: Code, routine: Routine) -> str:
@@ -164,20 +198,20 @@ def action_call(code: Code, routine: Routine) -> str:
         else target(code, one.type, is_local=code.choices.chance(70)) or constant(code, one.type)
         for one in routine.parameters
     ]
-    return code.layout.call(routine.name, given)
+    return call_text(routine.name, given)
 
 
 def trigger(code: Code) -> bool:
     """Write a TRIGGER and its motion."""
     if code.part.is_action:
         return False
-    choices, eq = code.choices, code.layout.eq
+    choices = code.choices
     code.spend(2)
-    if not code.style.has_splines or choices.chance(60):
+    if choices.chance(60):
         place = choices.pick(("0", "1"))
-        code.line(f"TRIGGER WHEN DISTANCE{eq}{place} {_triggered(code)}")
+        code.line(f"TRIGGER WHEN DISTANCE={place} {_triggered(code)}")
         return motion(code)
-    code.line(f"TRIGGER WHEN PATH{eq}{_distance(code)}{_onstart(code)} {_triggered(code)}")
+    code.line(f"TRIGGER WHEN PATH={_distance(code)}{_onstart(code)} {_triggered(code)}")
     return code.line(f"{motion_text(code, 'LIN')}{choices.pick(('', ' C_DIS'))}")
 
 

@@ -1,9 +1,9 @@
-"""Patterns: KRL text with placeholders, the form of most rules of a style.
+"""Patterns: KRL text with placeholders, the form of most rules.
 
 A placeholder stands between ``<`` and ``>``: ``<INT>`` is an expression of a type, ``<operand
 INT>`` the same in parentheses unless it is an atom, ``<atom INT>``, ``<constant INT>``, ``<place
 INT>`` something that can be assigned, ``<1-16>`` a number, ``<a|b>`` one of these words. Others are
-in `_FILLERS`. ``~`` is the gap around operators, ``:=`` the sign of an assignment.
+in `_FILLERS`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from grammar.generation.expressions import (
 from grammar.generation.literals import TEXT, predefined
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
-_PLACE: Final = re.compile(r"<[^<>]+>|~|:=")
+_PLACE: Final = re.compile(r"<[^<>]+>")
 _SCALARS: Final[Mapping[str, Type]] = {"INT": INT, "REAL": REAL, "BOOL": BOOL, "CHAR": CHAR}
 #: Greatest depth of the expressions in a statement.
 _DEPTH: Final = 2
@@ -70,20 +70,10 @@ def line(*texts: str, cost: int = 1) -> StatementRule:
 
 def output(code: Code, _depth: int = 0) -> str:
     """Return an output that a program may set."""
-    choices = code.choices
-    if code.style.is_closed:
-        return f"$OUT[{choices.between(1, 16)}]"
-    names = code.scope.signals(is_output=True)
-    return (
-        choices.pick(names) if names and choices.chance(50) else f"$OUT[{choices.below(512) + 1}]"
-    )
+    return f"$OUT[{code.choices.between(1, 16)}]"
 
 
 def _filler(place: str) -> ExpressionRule:
-    if place == "~":
-        return lambda code, _depth: code.layout.gap
-    if place == ":=":
-        return lambda code, _depth: code.layout.eq
     content = place[1:-1]
     if content in _FILLERS:
         return _FILLERS[content]
@@ -122,8 +112,7 @@ def _of_type(kind: str, type_: Type) -> ExpressionRule:
 
 
 def _lasting(code: Code, _depth: int) -> str:
-    names = code.scope.signals(is_output=False)
-    return code.choices.pick(names or ("$IN[1]", "$FLAG[2]", "$OUT[3]", "($TIMER[1]>100)"))
+    return code.choices.pick(("$IN[1]", "$FLAG[2]", "$OUT[3]", "($TIMER[1]>100)"))
 
 
 def _name(code: Code, _depth: int) -> str:

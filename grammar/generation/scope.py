@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 
-from grammar.generation.choices import Choices
 from grammar.generation.literals import Path, parts
-from grammar.semantics.types import BOOL, Array, Enumeration, Structure, Type, is_position
+from grammar.semantics.types import Array, Type
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,7 +18,6 @@ class Variable:
     is_writable: bool = True
     is_local: bool = True
     has_value: bool = True
-    is_signal: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,15 +34,14 @@ _Holder = tuple[Variable, Sequence[Path]]
 
 
 class Places:
-    """The places of one type, grouped by variable; ``whole`` are the variables of that type."""
+    """The places of one type, grouped by variable."""
 
-    __slots__ = ("_all", "_type", "holders", "whole")
+    __slots__ = ("_all", "_type", "holders")
 
     def __init__(self, type_: Type, holders: Sequence[_Holder]) -> None:
         self._type = type_
         self._all: list[Place] | None = None
         self.holders = holders
-        self.whole = [variable for variable, paths in holders if not paths[0]]
 
     @property
     def all(self) -> Sequence[Place]:
@@ -74,8 +70,7 @@ class Routine:
     """A routine that can be called; ``cost`` is the greatest number of statements it executes.
 
     ``deepest`` is the greatest depth of a recursive routine, whose first parameter is the depth.
-    ``is_action`` says that it is called by interrupts and triggers only, ``is_quick`` that programs
-    may call it too.
+    ``is_action`` says that it is called by interrupts and triggers only.
     """
 
     name: str
@@ -83,7 +78,6 @@ class Routine:
     result: Type | None = None
     cost: int = 0
     is_action: bool = False
-    is_quick: bool = False
     deepest: int = 0
 
 
@@ -98,7 +92,6 @@ class Scope:
     #: Caches of `places` and `arrays`, cleared when a variable is added.
     _places: dict[tuple[Type, bool, bool, bool, bool], Places] = field(default_factory=dict)
     _arrays: dict[tuple[Type, int, bool], list[Place]] = field(default_factory=dict)
-    _signals: dict[bool, list[str]] = field(default_factory=dict)
     _callable: dict[Type | None, list[Routine]] = field(default_factory=dict)
 
     def inner(self) -> Scope:
@@ -106,31 +99,10 @@ class Scope:
         holders = {type_: list(found) for type_, found in self._holders.items()}
         return Scope(list(self._routines), dict(self._variables), holders)
 
-    def some(self, choices: Choices, most: int) -> Scope:
-        """Return a scope with at most ``most`` variables and routines of each kind."""
-        variables: dict[Hashable, list[Variable]] = {}
-        for variable in self._variables.values():
-            key = (_kind(variable.type), variable.is_signal, variable.is_writable)
-            variables.setdefault(key, []).append(variable)
-        routines: dict[Type | None, list[Routine]] = {}
-        for routine in self._routines:
-            routines.setdefault(routine.result, []).append(routine)
-        chosen = {one for some in variables.values() for one in choices.few(some, most)}
-        return Scope(
-            [one for some in routines.values() for one in choices.few(some, most)],
-            {name: one for name, one in self._variables.items() if one in chosen},
-            {
-                type_: found
-                for type_, holders in self._holders.items()
-                if (found := [one for one in holders if one[0] in chosen])
-            },
-        )
-
     def add(self, variable: Variable) -> None:
         """Add a variable; it hides one with the same name."""
         self._places.clear()
         self._arrays.clear()
-        self._signals.clear()
         hidden = self._variables.get(variable.name)
         if hidden is not None:
             for type_, paths in parts(hidden.type).items():
@@ -191,21 +163,6 @@ class Scope:
             ]
         return found
 
-    def signals(self, *, is_output: bool) -> list[str]:
-        """Return the names of the signals that are inputs or outputs of one bit."""
-        found = self._signals.get(is_output)
-        if found is None:
-            found = self._signals[is_output] = [
-                one.name
-                for one in self.places(BOOL, is_written=is_output).whole
-                if one.is_signal and one.is_writable is is_output
-            ]
-        return found
-
-    def enumerations(self) -> list[Enumeration]:
-        """Return the enumerations of which some place exists."""
-        return [type_ for type_ in self._holders if isinstance(type_, Enumeration)]
-
     def variables(self) -> Iterator[Variable]:
         """Yield the visible variables."""
         yield from self._variables.values()
@@ -216,11 +173,6 @@ class Scope:
         """Add a routine."""
         self._callable.clear()
         self._routines.append(routine)
-
-    def forget_routines(self) -> None:
-        """Remove all routines."""
-        self._callable.clear()
-        self._routines.clear()
 
     def routines(self) -> Sequence[Routine]:
         """Return the visible routines in the order of their creation."""
@@ -237,17 +189,7 @@ class Scope:
 
     def actions(self) -> list[Routine]:
         """Return the routines that interrupts and triggers can call."""
-        return [one for one in self._routines if one.is_action or one.is_quick]
-
-
-@cache
-def _kind(type_: Type) -> Hashable:
-    """Return the key by which similar types are grouped."""
-    if isinstance(type_, Array):
-        return (len(type_.sizes), _kind(type_.element))
-    if isinstance(type_, Structure) and not is_position(type_):
-        return Structure
-    return Enumeration if isinstance(type_, Enumeration) else type_
+        return [one for one in self._routines if one.is_action]
 
 
 def _is(one: Type | None, other: Type | None) -> bool:

@@ -11,10 +11,14 @@ from typing import Final
 from grammar.generation.choices import Weighted
 from grammar.generation.code import Code
 from grammar.generation.expressions import array, call_of, constant, expression, read, target, text
-from grammar.generation.literals import AXIS_TYPES, POSES, TEXT, structure
+from grammar.generation.literals import AXIS_TYPES, POSES, TEXT
+from grammar.generation.types import COLOUR, MODE, POINT, RECORD, STATE
+from grammar.generation.values import assigned_value
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 
-_STATE: Final = structure("STATE_T")
+_ASSIGNED: Final = Weighted[Type](
+    (8, INT), (6, REAL), (4, BOOL), (3, CHAR), (2, COLOUR), (1, MODE), (1, POINT), (1, RECORD)
+)
 
 
 # ------------------------------------------------------------------------- assignments, calls
@@ -24,10 +28,10 @@ def assignment(code: Code) -> bool:
     """Write an assignment to a variable or a part of one."""
     code.spend()
     for _ in range(4):
-        type_ = code.style.assigned(code)
+        type_ = code.choices.weighted(_ASSIGNED)
         found = target(code, type_)
         if found is not None:
-            return code.set(found, code.style.value(code, found, type_))
+            return code.set(found, assigned_value(code, type_))
     return code.set("$FLAG[1]", "TRUE")
 
 
@@ -36,7 +40,7 @@ def assign_missing(code: Code) -> bool:
     if not code.risk:
         return False
     before, code.risk = code.risk, 100
-    type_ = code.style.assigned(code)
+    type_ = code.choices.weighted(_ASSIGNED)
     drawn = [one for _ in range(8) if (one := target(code, type_)) and "[" in one]
     value = read(code, type_)
     code.risk = before
@@ -75,8 +79,7 @@ _RANKS: Final = Weighted((3, 1), (1, 2))
 
 def call(code: Code) -> bool:
     """Write a call of a procedure or, for its effect, of a function."""
-    result = code.choices.weighted(_CALLED) if code.style.is_closed else None
-    found = code.scope.callable(result, code.left() - 2)
+    found = code.scope.callable(code.choices.weighted(_CALLED), code.left() - 2)
     if not found:
         return False
     code.spend()
@@ -92,7 +95,7 @@ def proceed(code: Code) -> bool:
     if found is None:
         return False
     code.spend(3)
-    before, code.risk = code.risk, 60 if code.style.is_closed else 0
+    before, code.risk = code.risk, 60
     code.line("ON_ERROR_PROCEED")
     code.choices.weighted(code.style.risky)(code)
     code.risk = before
@@ -120,7 +123,7 @@ def set_advance(code: Code) -> bool:
 
 def channel(code: Code) -> bool:
     """Write the opening, use and closing of a channel [FCT-08]."""
-    state, handle = target(code, _STATE), target(code, INT)
+    state, handle = target(code, STATE), target(code, INT)
     if state is None or handle is None:
         return False
     code.spend(3)

@@ -19,8 +19,6 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from support.lazy_dataclass import dataclass
 
-_SHARED = ("bas_spline.src", "ir_stopm.src")
-
 
 @dataclass(frozen=True, slots=True)
 class Datum:
@@ -97,5 +95,3 @@ def _of_packages() -> str:
 def _files() -> Iterator[Traversable]:
     folder = resources.files("interp.standins").joinpath("library")
     yield from sorted(folder.iterdir(), key=lambda file: file.name)
-    shared = resources.files("grammar.generation.cells").joinpath("texts")
-    yield from (shared.joinpath(name) for name in _SHARED)

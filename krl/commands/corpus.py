@@ -107,7 +107,7 @@ def synth(
 
     The same size and seed give the same files everywhere. They are not evidence for a grammar.
     """
-    from grammar.generation.cells.writing import write_cells
+    from grammar.generation.synthetic_corpus import write_cells
     from krl.terminal.progress import progress_bar
 
     wanted = _bytes(size)

@@ -19,7 +19,7 @@ from conformance.metamorphic.comparison import (
 from conformance.metamorphic.motion_programs import moving_program
 from conformance.metamorphic.subject import Program, Run
 from conformance.metamorphic.tree_rewriting import integer, rewritten
-from grammar.generation.closed.programs import Sample
+from grammar.generation.programs import Sample
 from grammar.syntax import ast
 from interp.tree import statements
 from interp.values.operators import apply

@@ -10,7 +10,7 @@ from typing import Any, get_args, get_type_hints
 import pytest
 
 from grammar.check.types import expressions
-from grammar.generation.closed.programs import seeded
+from grammar.generation.programs import seeded
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.sentences import Sentences, Speller
@@ -104,7 +104,7 @@ TABLES: dict[str, tuple[Kinds, Callable[[], Kinds]]] = {
         EXPRESSIONS,
         lambda: {*compiled_expressions._VALUES, *PLACES},
     ),
-    "grammar.generation.closed": (EXECUTED | EXPRESSIONS | DEFINITIONS, generated),
+    "grammar.generation": (EXECUTED | EXPRESSIONS | DEFINITIONS, generated),
 }
 
 

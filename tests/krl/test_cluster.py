@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from grammar.generation.cells.writing import write_cells
+from grammar.generation.synthetic_corpus import write_cells
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from krl.cli import main

@@ -21,7 +21,7 @@ from typing import Any
 
 import pytest
 
-from grammar.generation.cells.writing import write_cells
+from grammar.generation.synthetic_corpus import write_cells
 
 pytestmark = pytest.mark.soak
 

@@ -84,7 +84,7 @@ def _sizes(given: str) -> list[float]:
 
 
 def _write(roots: Sequence[Path], corpus: Path, size: int, seed: int) -> None:
-    from grammar.generation.cells.writing import write_cells
+    from grammar.generation.synthetic_corpus import write_cells
     from grammar.notation.krl_grammar import krl_grammar
     from grammar.parser.failures import FailureFinder
     from grammar.parser.recognizer import Recognizer

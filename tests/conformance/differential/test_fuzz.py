@@ -17,7 +17,7 @@ from conformance.differential.random_world import RandomWorld
 from conformance.differential.reduction import reduce_program, statements_of
 from conformance.differential.runs import EXECUTORS, LIMITS, Prepared, available, trace_of
 from conformance.differential.traces import plain, shown
-from grammar.generation.closed.programs import seeded
+from grammar.generation.programs import seeded
 from grammar.semantics.types import INT, Array
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.vm.executor import Machine

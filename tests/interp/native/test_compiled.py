@@ -11,7 +11,7 @@ import pytest
 from conformance.differential.campaign import world_seed
 from conformance.differential.divergence import diverged, prepared
 from conformance.differential.runs import EXECUTORS, trace_of
-from grammar.generation.closed.programs import seeded
+from grammar.generation.programs import seeded
 from grammar.syntax.source import Source
 from interp.bench.kernels import kernels_in
 from interp.executors import Prepared, is_available

@@ -49,7 +49,6 @@ def _move(package: Path) -> None:
                 "constructs/0038-for-step.toml",
                 "notation/g4.lark",
                 "KRL.g4",
-                "generation/cells/texts/config.dat",
             )
         ),
         pytest.param(_move, id="moved"),

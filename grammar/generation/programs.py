@@ -1,4 +1,4 @@
-"""Whole closed programs: files, data lists, and routines that call one another and terminate.
+"""Whole programs: files, data lists, and routines that call one another and terminate.
 
 A routine is generated before its callers, so the cost of a call is known.
 """
@@ -10,13 +10,12 @@ from dataclasses import dataclass
 from typing import Final
 
 from grammar.generation.choices import Choices, SeededChoices, Weighted
-from grammar.generation.closed.style import CLOSED, PLAIN, RESULTS
-from grammar.generation.closed.types import COLOUR, MODE, POINT, RECORD, STATE
-from grammar.generation.code import Code, Part, Size
+from grammar.generation.code import Code, Names, Part, Size
 from grammar.generation.control_flow import returned, statements
-from grammar.generation.literals import AXIS_TYPES, POSES, TEXT
+from grammar.generation.literals import AXIS_TYPES, POSES, TEXT, constant
 from grammar.generation.routines import (
     DEPTH,
+    PLAIN,
     begin,
     constant_datum,
     datum,
@@ -29,6 +28,8 @@ from grammar.generation.routines import (
 )
 from grammar.generation.scope import Parameter, Routine, Scope, Variable
 from grammar.generation.statements import channel
+from grammar.generation.style import STYLE
+from grammar.generation.types import COLOUR, MODE, POINT, RECORD, STATE
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 
 
@@ -49,15 +50,29 @@ def seeded(seed: int, number: int) -> Sample:
     return generate(SeededChoices(f"{seed}/{number}"))
 
 
-def generate(choices: Choices, size: Size | None = None) -> Sample:
-    """Return a program that has no error and terminates; most are small."""
-    return _Programs(choices, size or choices.weighted(_SIZES)).sample()
+def generate(choices: Choices, size: Size | None = None, suffix: str = "") -> Sample:
+    """Return a program that has no error and terminates; most are small.
+
+    ``suffix`` ends the names of its variables.
+    """
+    return _Programs(choices, size or choices.weighted(_SIZES), suffix).sample()
 
 
 _SIZES: Final = Weighted(
     (12, Size(budget=150, others=40, statements=2, routines=1, data=1)),
     (6, Size(budget=250, others=60, statements=3, routines=2)),
     (2, Size()),
+)
+_RESULTS: Final = Weighted[Type](
+    (5, INT),
+    (4, REAL),
+    (4, BOOL),
+    (2, CHAR),
+    (2, COLOUR),
+    (2, POINT),
+    (2, POSES[0]),
+    (1, POSES[3]),
+    (2, Array(CHAR, (8,))),
 )
 _TABLES: Final[tuple[Type, ...]] = (
     Array(INT, (4,)),
@@ -87,30 +102,14 @@ _DEEPEST: Final = 80
 _MOST_FIRST_VALUES, _FEW_FIRST_VALUES = 12, 4
 
 
-class _Numbered:
-    """Names that consist of a letter and a number."""
-
-    def __init__(self) -> None:
-        self._count = 0
-
-    def variable(self, _type: Type, letter: str = "V") -> str:
-        """Return a new name."""
-        self._count += 1
-        return f"{letter}{self._count}"
-
-    def label(self) -> str:
-        """Return a new name for a label."""
-        return self.variable(INT, "L")
-
-
 class _Programs:
     """Generates one program."""
 
-    def __init__(self, choices: Choices, size: Size) -> None:
+    def __init__(self, choices: Choices, size: Size, suffix: str) -> None:
         self.choices = choices
         self.size = size
         self.risk = choices.pick((3, 6, 12)) if choices.chance(size.risky) else 0
-        self.names = _Numbered()
+        self.names = Names(suffix)
         self.has_channel = choices.chance(15)
 
     # ----------------------------------------------------------------------- files
@@ -155,8 +154,8 @@ class _Programs:
 
         def declare_all(types: Sequence[Type]) -> None:
             for type_ in types:
-                name = self.names.variable(type_, "D")
-                lines.extend(datum(choices, CLOSED, scope, type_, name, is_global=is_public))
+                name = self.names.new("D")
+                lines.extend(datum(choices, scope, type_, name, is_global=is_public))
 
         declare_all([*self._some(PLAIN, most + 1), *self._some(_STRUCTURED, (most + 1) // 2)])
         tables = self._some(_TABLES, most)
@@ -164,10 +163,8 @@ class _Programs:
             tables.append(Array(CHAR, (12,)))
         declare_all(tables)
         for type_ in self._some((INT, REAL, CHAR, COLOUR, BOOL), most):
-            constant = self.names.variable(type_, "K")
-            lines.append(
-                constant_datum(choices, CLOSED, scope, type_, constant, is_global=is_public)
-            )
+            name = self.names.new("K")
+            lines.append(constant_datum(choices, scope, type_, name, is_global=is_public))
         return "\n".join([*lines, "ENDDAT", ""])
 
     def _some(self, items: Sequence[Type], most: int) -> list[Type]:
@@ -222,9 +219,9 @@ class _Programs:
         choices = self.choices
         result: Type | None = None
         if not is_action and choices.chance(60):
-            result = choices.weighted(RESULTS)
+            result = choices.weighted(_RESULTS)
         count = choices.below(2 if is_action else 4)
-        given = parameters(choices, CLOSED, self.names, count, has_arrays=not is_action)
+        given = parameters(choices, self.names, count, has_arrays=not is_action)
         code = self._code(scope, self.size.others, Part(is_action=is_action, result=result))
         variables = self._declare(code, given)
         if not choices.chance(4):
@@ -255,7 +252,7 @@ class _Programs:
         for one in given[1:]:
             if one.type == TEXT and choices.chance(50):
                 code.spend()
-                code.line(f"P2[{choices.between(1, 2)}]={CLOSED.literals.constant(choices, CHAR)}")
+                code.line(f"P2[{choices.between(1, 2)}]={constant(choices, CHAR)}")
         more = "".join(f", {one.name}{'[]' * (one.type == TEXT)}" for one in given[1:])
         if result is None:
             code.line(f"{name}({DEPTH}-1{more})")
@@ -270,7 +267,7 @@ class _Programs:
     def _code(self, scope: Scope, budget: int, part: Part) -> Code:
         return Code(
             self.choices,
-            CLOSED,
+            STYLE,
             self.names,
             scope.inner(),
             size=self.size,
@@ -293,14 +290,14 @@ class _Programs:
         if code.part.is_main:
             wanted += [INT, REAL, BOOL, CHAR]
 
-        def name_of(type_: Type) -> str:
+        def name() -> str:
             """Return a new name, or now and then that of a datum, which is hidden then [SCO-05]."""
             data = [one.name for one in code.scope.variables() if _can_be_hidden(one)]
             if data and self.choices.chance(5):
                 return self.choices.pick(data)
-            return self.names.variable(type_)
+            return self.names.new()
 
-        return declare(code, wanted, name_of)
+        return declare(code, wanted, name)
 
     def _begin(self, code: Code, variables: Sequence[Variable], most: int) -> None:
         """Write the initial values of local variables, at most ``most`` parts of each."""

@@ -1,4 +1,4 @@
-"""Closed programs: valid, bounded, the same for a seed, and all of the language."""
+"""Random programs: valid, bounded, the same for a seed, and all of the language."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from conformance.differential.construct_coverage import language
 from conformance.differential.divergence import prepared
 from conformance.differential.runs import EXECUTORS, trace_of
 from grammar.generation.choices import Choices
-from grammar.generation.closed.programs import Sample, generate, seeded
 from grammar.generation.code import Size
+from grammar.generation.programs import Sample, generate, seeded
 from interp.native import AVAILABLE
 from interp.program.load import Limits
 from interp.values.faults import LinkError

@@ -1,4 +1,4 @@
-"""Values that closed programs assign: small numbers, conversions, and sometimes an overflow."""
+"""Values that programs assign: small numbers, conversions, and sometimes an overflow."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _TOO_LARGE: Final = (
 )
 
 
-def assigned_value(code: Code, _place: str, type_: Type) -> str:
+def assigned_value(code: Code, type_: Type) -> str:
     """Return a value for a variable of a type, sometimes one that has to be converted."""
     choices = code.choices
     depth = choices.between(1, code.size.depth)

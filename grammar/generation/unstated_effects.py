@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from grammar.generation.closed.types import STATE
 from grammar.generation.code import Code
 from grammar.generation.expressions import array, constant, read, target
 from grammar.generation.literals import TEXT
+from grammar.generation.types import STATE
 from grammar.semantics.types import INT
 
 #: First value, last value and step of a FOR whose counter leaves the range of INT.
@@ -33,12 +33,12 @@ def order_of_evaluation(code: Code) -> bool:
     ]
     if changing:
         code.spend(changing[0].cost)
-        parts += [code.layout.call(changing[0].name, [place]), place]
+        parts += [f"{changing[0].name}({place})", place]
     drawn = [choices.pick(parts) for _ in range(choices.between(2, 3))]
     code.spend()
     match choices.below(3):
         case 0:
-            return code.set(place, code.layout.gap.join("+" + one for one in drawn)[1:])
+            return code.set(place, " ".join("+" + one for one in drawn)[1:])
         case 1:
             return code.set(place, f"STRFIND({drawn[0]}, {text}, {text}, #CASE_SENS)-{drawn[1]}")
     row = read(code, INT)

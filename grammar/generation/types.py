@@ -1,4 +1,4 @@
-"""The types that closed programs declare, such as a structure of structures, arrays and texts."""
+"""The types that programs declare, such as a structure of structures, arrays and texts."""
 
 from __future__ import annotations
 

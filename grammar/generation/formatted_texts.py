@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from grammar.generation.closed.types import COLOUR, STATE
 from grammar.generation.code import Code
 from grammar.generation.expressions import array, constant_or_place, expression, read, target, text
 from grammar.generation.literals import TEXT
+from grammar.generation.types import COLOUR, STATE
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
 _FORMATS: Final[tuple[tuple[Type, tuple[str, ...]], ...]] = (

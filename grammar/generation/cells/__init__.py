@@ -1,1 +1,0 @@
-"""Synthetic robot cells that resemble real ones: folders of modules in many dialects."""
