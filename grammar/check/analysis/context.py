@@ -208,6 +208,10 @@ class Context:
         """Return the declaration of a name, or ``None`` if it is unknown."""
         return self.resolution.found(name)
 
+    def declares(self, found: Found) -> bool:
+        """Return whether this file has the declaration; the module of its scope has no tree."""
+        return found.module is not None and found.module.table is self.module.table
+
     def note_bound(self, node: ast.Expression, bound: Bound) -> None:
         """Note the values that a parameter may have, if the expression is a parameter."""
         node = without_parentheses(node)

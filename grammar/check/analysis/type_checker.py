@@ -92,7 +92,8 @@ class TypeChecker:
                 entry = found.scope.system.variables[found.symbol.name]
                 known = UNKNOWN if entry.file else known
             elif self.context.is_lacking and found.symbol.kind is Kind.VARIABLE:
-                known = known if found.module in (None, self.context.module) else UNKNOWN
+                is_other = found.module is not None and not self.context.declares(found)
+                known = UNKNOWN if is_other else known
             self._type_of[found] = known
         return known
 

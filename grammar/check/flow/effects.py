@@ -162,10 +162,10 @@ class _Collector:
                 yield self._place(name, name.text)
 
     def _used(self) -> Iterator[tuple[str, str]]:
-        own = self._context.module
         for found in self._context.used:
             symbol, module = found.symbol, found.module
-            if module is not None and module is not own and symbol.kind is Kind.VARIABLE:
+            is_variable = symbol.kind is Kind.VARIABLE
+            if module is not None and is_variable and not self._context.declares(found):
                 yield module.path, symbol.key
 
     def _place(self, node: ast.Node, what: str) -> Place:

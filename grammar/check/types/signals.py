@@ -23,9 +23,7 @@ def check_signal(checker: TypeChecker, node: ast.Signal) -> None:
         message = f"{node.name.text} is not a predefined signal"
         checker.report("not-predefined-signal", node.name, message, is_unconfirmed=True)
     circle = _circle(context, node)
-    own = [
-        one.symbol.span for one in circle if one.module and one.module.path == context.module.path
-    ]
+    own = [one.symbol.span for one in circle if context.declares(one)]
     if circle and node.name.span == max(own):  # one finding in each file
         names = [one.symbol.name for one in (*circle, circle[0])]
         message = f"{node.name.text} is no input or output, because it leads back to itself"

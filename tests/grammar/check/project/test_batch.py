@@ -63,6 +63,13 @@ def test_projects_see_nothing_of_each_other(tmp_path: Path) -> None:
     assert {"two"} == wrong
 
 
+def test_local_variables_keep_their_types_without_a_data_list(tmp_path: Path) -> None:
+    """The list that is missing may declare what is declared nowhere, and nothing else."""
+    text = "DEF WORK()\n  DECL INT N\n  N = TRUE\n  N = IN_THE_LIST\n  MISSING()\nEND\n"
+    found = check(lay(tmp_path, WORK__src=text))
+    assert ("WORK.src", 3, "KSS1446") in codes(found)
+
+
 def test_names_that_two_lists_declare(tmp_path: Path) -> None:
     """A list that a controller has twice is one finding, in the later file."""
     text = "DEFDAT $CONFIG PUBLIC\nDECL GLOBAL INT one=1\nDECL GLOBAL INT two=2\nENDDAT\n"
