@@ -69,6 +69,11 @@ _UNHEEDED: Final = re.compile(
     r"^ *ON_ERROR_PROCEED *(?:;.*)?\n *S?(?:PTP|LIN|CIRC|PTP_SPLINE|SPLINE)(?:_REL)?\b",
     re.IGNORECASE | re.MULTILINE,
 )
+#: Forms that no clause has which may fail a case: a controller may refuse the whole program.
+_FORMS: Final = {
+    re.compile(r"^ *ENDSPLINE +C_", re.IGNORECASE | re.MULTILINE): "SPL-01.b alone has a criterion",
+    re.compile(r"\bDO\b[^(;\n]*=[^;\n]*\bPRIO\b", re.IGNORECASE): "only a call has a priority",
+}
 #: A wait for some time.
 _TIMED: Final = re.compile(r"\bWAIT +SEC +0*\.?0*[1-9]", re.IGNORECASE)
 #: The syntax of message numbers in expectations, and in rules, as in "3214 to 3217".
@@ -161,6 +166,7 @@ def _defects(case: Case) -> Iterator[str]:
     yield from _error_defects(case)
     yield from _refusals(case)
     yield from _periods(case)
+    yield from _form_defects(case)
 
 
 def _text_defects(case: Case) -> Iterator[str]:
@@ -252,6 +258,15 @@ def _periods(case: Case) -> Iterator[str]:
     for one in case.expectations:
         if one.file.lower().endswith(".sub") and case.is_sure(one) and not one.is_absence:
             yield f"{one.file}:{one.line}: a submit program has no period: WAIT FOR what it does"
+
+
+def _form_defects(case: Case) -> Iterator[str]:
+    """Yield forms of a hard case that its clauses cannot have."""
+    for source in case.sources if case.may_fail else ():
+        for form, why in _FORMS.items():
+            for found in form.finditer(source.text):
+                line = source.text.count("\n", 0, found.end()) + 1
+                yield f"{source.path}:{line}: {why}"
 
 
 def _messages_of(case: Case, one: Expectation) -> set[int]:

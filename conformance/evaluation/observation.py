@@ -96,6 +96,11 @@ class Observation:
     values: Mapping[str, Any] = field(default_factory=dict)
 
     @property
+    def unsure(self) -> int:
+        """How many µs a time may be off: a real controller is observed once a cycle."""
+        return 0 if self.is_exact else self.cycle
+
+    @property
     def shows_run(self) -> bool:
         """Whether anything shows that the program was run; a recording may be empty."""
         has_lines = self.watched is None or "line" in self.watched

@@ -20,6 +20,7 @@ from conformance.evaluation.observation import Observation
 from conformance.evaluation.path_geometry import (
     TOLERANCE_DEGREES,
     TOLERANCE_MM,
+    around,
     between,
     change_rates,
     crosses_box,
@@ -269,17 +270,19 @@ def _position(one: Expectation, seen: Observation, part: _MotionPath, marks: Mar
         except LookupError as error:
             return "unmet", str(error.args[0])
     wanted = _numbers(one)
-    at = int(np.searchsorted(part.path.times, moment))
-    near = np.arange(max(at - 4, 0), min(at + 4, len(part.path.times)))
+    moments = around(moment, seen.unsure if one.when is not None else 0)
+    first, last = np.searchsorted(part.path.times, moments[[0, -1]])
+    near = np.arange(max(first - 4, 0), min(last + 4, len(part.path.times)))
     rows = part.path.axes[near] if one.kind == "axes" else part.poses(near, moment)
-    found = between(part.path.times[near], rows, moment)[: len(wanted)]
+    found = between(part.path.times[near], rows, moments)[:, : len(wanted)]
     off = np.abs(found - wanted)
     if one.kind == "pose":  # an angle and one a turn further are the same
-        off[3:] = np.abs((found[3:] - wanted[3:] + 180.0) % 360.0 - 180.0)
-    actual = " ".join(f"{number:.4f}" for number in found)
+        off[:, 3:] = np.abs((found[:, 3:] - wanted[3:] + 180.0) % 360.0 - 180.0)
+    best = int(off.max(axis=1).argmin())
+    actual = " ".join(f"{number:.4f}" for number in found[best])
     usual = TOLERANCE_MM if one.kind == "pose" else TOLERANCE_DEGREES
     margin = usual if one.tolerance is None else one.tolerance
-    return ("met" if float(off.max()) <= margin else "unmet"), actual
+    return ("met" if float(off[best].max()) <= margin else "unmet"), actual
 
 
 # ------------------------------------------------------------------------------------- speeds

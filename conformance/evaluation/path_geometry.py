@@ -131,6 +131,11 @@ def from_synchronous(axes: Array) -> float | None:
     return float(np.abs(axes - axes[0] - share[:, None] * way).max())
 
 
+def around(moment: float, unsure: float) -> Array:
+    """Return the moments that a time may mean which is unsure by so much."""
+    return np.linspace(moment - unsure, moment + unsure, 241 if unsure else 1)
+
+
 def between(
     times: npt.NDArray[np.int64], rows: Array, moments: npt.ArrayLike, after: int = 0
 ) -> Array:

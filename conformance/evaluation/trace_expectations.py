@@ -11,7 +11,7 @@ from typing import Any, Final, Literal
 import numpy as np
 
 from conformance.evaluation.observation import Event, Observation
-from conformance.evaluation.path_geometry import between
+from conformance.evaluation.path_geometry import around, between
 from conformance.suite.expectations import Anchor, Expectation, When
 from interp.robot.simulation.tracking import PathRecord
 
@@ -239,7 +239,7 @@ def _event(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
     if one.near:
         if seen.path is None:
             return "open", "no path was recorded"
-        events, far = _near(one, events, seen.path)
+        events, far = _near(one, events, seen.path, seen.unsure)
         if not events and far:
             return ("met" if "never" in words else "unmet"), f"{far} away"
     if "never" in words:
@@ -273,12 +273,14 @@ def _events(one: Expectation, seen: Observation) -> list[Event]:
     return seen.on_line(one.file, one.line, _EVENTS[one.kind])
 
 
-def _near(one: Expectation, events: Sequence[Event], path: PathRecord) -> tuple[list[Event], str]:
+def _near(
+    one: Expectation, events: Sequence[Event], path: PathRecord, unsure: int
+) -> tuple[list[Event], str]:
     """Return the events during which the tool was near the place, and the distances as text."""
     *place, most = one.near
     timed = [(event, event.time) for event in events if event.time is not None]
-    tools = between(path.times, path.points[:, :3], [time for _, time in timed])
-    gaps = [float(gap) for gap in np.linalg.norm(tools - np.array(place), axis=1)]
+    tools = (between(path.times, path.points[:, :3], around(time, unsure)) for _, time in timed)
+    gaps = [float(np.linalg.norm(each - np.array(place), axis=1).min()) for each in tools]
     far = ", ".join(
         f"{_times([event])} {gap:.2f} mm" for (event, _), gap in zip(timed, gaps, strict=True)
     )
@@ -336,15 +338,16 @@ def _is_in_time(
     if tolerance is not None:
         margin = round(tolerance * 1e6)
     first = time_of(when.first, seen, marks)
+    early, late = event.time - seen.unsure, event.time + seen.unsure
     match when.relation:
         case "at":
             return abs(event.time - first) <= margin
         case "before":
-            return event.time < first
+            return early < first
         case "after":
-            return event.time > first
+            return late > first
     assert when.last is not None, "between has two ends"
-    return first <= event.time <= time_of(when.last, seen, marks)
+    return first <= late and early <= time_of(when.last, seen, marks)
 
 
 def time_of(anchor: Anchor, seen: Observation, marks: Marks) -> int:

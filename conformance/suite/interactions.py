@@ -52,7 +52,7 @@ _STOPS: Final = {"brake": "INT-09.b", "brake_hard": "INT-09.b", "operator": "CTL
 _STOPPED: Final = re.compile(r"(;> pa(?:th|sses) .*)\[.*\]")
 #: The rule of the last expectation of each case.
 _FIRST: Final = "MOT-20"
-_SPEED: Final = "  $VEL.CP = 0.25"
+_SPEED: Final = "  $VEL.CP = "
 _RULE: Final = re.compile(r"\[(.{3}-.{2})")
 
 
@@ -110,7 +110,8 @@ def drawn(seed: int) -> list[Case]:
             name = f"drawn_{number:03}"
             head = [one for one in _front(row) if not one.startswith((";@ rule", ";@ title"))]
             body = [_bare(one) for one in _main(name, row)]
-            body[body.index(_SPEED)] += f" ;> runs 1 [{_FIRST}]"
+            speed = next(at for at, one in enumerate(body) if one.startswith(_SPEED))
+            body[speed] += f" ;> runs 1 [{_FIRST}]"
             title = ", ".join(f"{name} {row[name]}" for name in sorted(row))
             lines = [f";@ rule: {_FIRST}", f";@ title: {title}", *head, *filter(None, body), ""]
             (folder / f"{name}.src").write_text("\n".join(lines), encoding="utf-8", newline="\n")

@@ -57,6 +57,13 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
         ("control/good.src", "HALT", "HALT ; é", "ASCII"),
         ("control/good.src", "HALT", "HALT ;" + 90 * "x", "longer than 100"),
         ("control/good.src", "HALT", "HALT HALT", "not grammatical"),
+        ("control/good.src", "HALT", "HALT\n  SPLINE\n  ENDSPLINE C_SPL", "good.src:6: SPL-01.b"),
+        (
+            "control/good.src",
+            "HALT",
+            "TRIGGER WHEN DISTANCE=0 DELAY=0 DO $OUT[1]=TRUE PRIO=-1\n  HALT",
+            "good.src:5: only a call",
+        ),
         ("control/good.src", "runs 1", "accepted", "cannot be seen in phase run"),
         ("control/good.src", "runs 1", "runs 1 ;> runs 1", "stands twice"),
         ("control/good.src", "runs 1", "line at mark NOWHERE", "nothing is marked NOWHERE"),

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from conformance.evaluation.evaluator import evaluate_run
 from conformance.evaluation.observation import Event, Observation
 from conformance.evaluation.path_expectations import evaluate_on_path
 from conformance.evaluation.path_geometry import circle_of, drawn, from_arc, from_circle, from_line
@@ -124,6 +125,25 @@ def test_pose_is_at_the_end_or_at_a_moment() -> None:
     assert "met" == state("pose 50 0 0 at 0.3", seen(LINE))
     assert "met" == state("pose 100 0 0 at out 1", seen(LINE, out))
     assert "unmet" == state("pose 100 0 0 at out 2", seen(LINE, out))
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("pose 50 0 0 at out 1", 3),
+        ("out 1 TRUE near 50 0 0 by 0.1", 9),
+        ("out 1 TRUE before 0.3", 9),
+        ("end after out 1 + 0.3", 3),
+        ("out 1 TRUE between 0.2 and 0.3", 9),
+    ],
+)
+def test_a_recorded_time_may_be_a_cycle_off(text: str, line: int) -> None:
+    """A real controller is observed once a cycle; more than a cycle is too much."""
+    late = Event(300_000 + CYCLE // 2, "robot", "out", "a.src", 9, {"number": 1, "value": True})
+    asked, whole = read_expectation(text, "a.src", line), seen(LINE, late)
+    for is_exact, cycle, met in ((True, CYCLE, False), (False, CYCLE, True), (False, 5_000, False)):
+        found = replace(whole, is_exact=is_exact, cycle=cycle)
+        assert met == (evaluate_run([asked], found)[0].state == "met")
 
 
 def test_pose_beside_another_base_is_in_the_base_of_its_motion() -> None:
