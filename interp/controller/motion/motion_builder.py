@@ -46,7 +46,7 @@ _BROUGHT: Final = {"LIN": "PTP", "SLIN": "SPTP"}
 _REPLACED: Final = {**_BROUGHT, "CIRC": "PTP", "SCIRC": "SPTP"}
 
 
-@dataclass(slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class PlannedMotion:
     """A motion, the system variables it was planned with, and its triggers and stops by key."""
 
@@ -160,6 +160,8 @@ class MotionBuilder:
             kind, criteria, auxiliary, angle = _REPLACED.get(kind, kind), (), None, None
             settings = replace(settings, target_status="#BEST")
             target = {name: value for name, value in target.items() if name not in ("S", "T")}
+        set_triggers: dict[int, SetTrigger] = {}
+        places = self._places(set_triggers, triggers)
         motion = Motion(
             self._next(),
             request.at,
@@ -171,20 +173,18 @@ class MotionBuilder:
             bool(suffix),
             _reference(request),
             criteria,
+            places,
         )
-        built = PlannedMotion(motion, snapshot)
-        built.motion = replace(motion, places=self._places(built, triggers))
-        return built
+        return PlannedMotion(motion, snapshot, set_triggers)
 
     def block(self, request: MoveSpline, triggers: Sequence[SetTrigger]) -> PlannedMotion:
         """Build the motion of a spline block. Raises `Fault`."""
         if self._is_first and not _begins_completely(request):
             self._refuse_start(request.at, request.keyword)
         snapshot = self._variables.snapshot(request.values)
-        built = PlannedMotion(
-            Motion(0, request.at, request.keyword, self._settings(snapshot)), snapshot
-        )
-        outside = self._places(built, triggers)
+        set_triggers: dict[int, SetTrigger] = {}
+        set_stops: dict[int, SplineStop] = {}
+        outside = self._places(set_triggers, triggers)
         parts: list[SplinePart] = []
         ranges: list[SplineRange] = []
         places: list[Place] = []
@@ -196,22 +196,24 @@ class MotionBuilder:
                     parts.append(replace(part, stop_places=tuple(stops)))
                     ranges, places, stops = [], [], []
                 case SetTrigger():
-                    places += self._places(built, [item])
+                    places += self._places(set_triggers, [item])
                 case SplineStop(place, on_start, _):
                     stops.append(self._place("PATH", place, on_start, 0.0))
-                    built.stops[stops[-1].key] = item
+                    set_stops[stops[-1].key] = item
                 case SplineRange():
                     ranges.append(item)
-        built.motion = replace(
-            built.motion,
-            number=self._next(),
+        motion = Motion(
+            self._next(),
+            request.at,
+            request.keyword,
+            self._settings(snapshot),
             criteria=("C_SPL",) if request.is_approximated else (),
             places=(*outside, *places),
             parts=tuple(parts),
             ranges=tuple(ranges),
             stop_places=tuple(stops),
         )
-        return built
+        return PlannedMotion(motion, snapshot, set_triggers, set_stops)
 
     @property
     def _is_first(self) -> bool:
@@ -294,11 +296,14 @@ class MotionBuilder:
             _loads(values),
         )
 
-    def _places(self, built: PlannedMotion, triggers: Iterable[SetTrigger]) -> tuple[Place, ...]:
+    def _places(
+        self, by_key: dict[int, SetTrigger], triggers: Iterable[SetTrigger]
+    ) -> tuple[Place, ...]:
+        """Return the places of triggers, and note each trigger by the key of its place."""
         places = []
         for one in triggers:
             place = self._place(one.place_kind, one.place, one.on_start, one.delay)
-            built.triggers[place.key] = one
+            by_key[place.key] = one
             places.append(place)
         return tuple(places)
 

@@ -198,7 +198,9 @@ class MotionQueue:
         arm = self._core.arm
         target = arm.target() if isinstance(arm, _HasTarget) else None
         self._queued[motion.number] = _QueuedMotion(planned, task, target)
-        if _LENGTH_ZERO not in command.notices:
+        if _LENGTH_ZERO in command.notices:
+            self._spend(task)
+        else:
             self.points.append(
                 PlannedPoint(
                     motion.number,
@@ -351,11 +353,9 @@ class MotionQueue:
 
     def _ended(self, event: CoreEvent, queued: _QueuedMotion) -> None:
         state = self._state
-        motion, task, command = queued.planned.motion, queued.task, event.command
+        motion = queued.planned.motion
         self.ended += 1
-        self._remove(motion.number, task)
-        if isinstance(command, MotionCommand) and _LENGTH_ZERO in command.notices:
-            task.spent += state.profile.requests // 2  # it took no time: a loop of them must wait
+        self._remove(motion.number, queued.task)
         for owner, at, path, value in self._at_end.pop(motion.number, ()):
             state.put_at(owner.name, at, path, value)
         if self._has_other_posture(motion):
@@ -366,6 +366,10 @@ class MotionQueue:
             state.messages.post_number(
                 motion.at, number, "acknowledgement" if stops else "notification"
             )
+
+    def _spend(self, task: Task) -> None:
+        """Spend half of a slice on a motion that takes no time: a loop of them must wait."""
+        task.spent += self._state.profile.requests // 2
 
     def _has_other_posture(self, motion: Motion) -> bool:
         """Return whether a path motion ended with another Status or Turn than programmed [POS-10].

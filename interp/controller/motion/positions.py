@@ -30,7 +30,7 @@ from interp.robot.kinematics.placement import IpoMode, Placement
 from interp.values.faults import fault
 from interp.values.poses import IDENTITY, Pose
 from interp.values.predefined_values import empty_structure
-from interp.values.values import EnumValue, StructureValue, single
+from interp.values.values import StructureValue, single
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.kinematics import Kinematics
@@ -72,8 +72,8 @@ def pose_of(frame: Any) -> Pose | None:
 
 
 def word_of(value: Any) -> str:
-    """Return an enumeration constant as KRL writes it, ``#BASE``; other values as ``str`` does."""
-    return f"#{value.name.upper()}" if isinstance(value, EnumValue) else str(value)
+    """Return an enumeration constant as KRL writes it, ``#BASE``; other values in upper case."""
+    return str(value).upper()
 
 
 class FramesInForce:

@@ -6,6 +6,7 @@ Only the top level runs [INT-05].
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import field
 from typing import Final, Literal
@@ -21,7 +22,7 @@ from support.lazy_dataclass import dataclass
 #: The priority of what cannot be interrupted: plain actions of triggers, and cyclic signals.
 ALWAYS: Final = 0
 #: The priority of a program without levels.
-PROGRAM: Final = 1 << 16
+PROGRAM: Final = sys.maxsize
 
 LevelKind = Literal["interrupt", "trigger", "cycle"]
 
