@@ -49,7 +49,6 @@ class Timers:
                 return timer.since is None
         is_reached = self._value(timer) >= 0
         if timer.flag is None or (timer.was_below and is_reached):
-            timer.flag = None
             return is_reached
         return timer.flag
 
