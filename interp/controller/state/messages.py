@@ -137,14 +137,9 @@ class Messages:
 
     def acknowledge(self, number: int | None) -> None:
         """Acknowledge the messages of this number, or all for ``None``."""
-        shown = [
-            one.handle
-            for one in self._shown.values()
-            if one.kind == "QUIT" and number in (None, one.number)
-        ]
-        for handle in shown:
-            del self._shown[handle]
-        if number is None:
-            self.unacknowledged.clear()
-        else:
-            self.unacknowledged = [one for one in self.unacknowledged if one != number]
+        self._shown = {
+            handle: one
+            for handle, one in self._shown.items()
+            if one.kind != "QUIT" or number not in (None, one.number)
+        }
+        self.unacknowledged = [one for one in self.unacknowledged if number not in (None, one)]
