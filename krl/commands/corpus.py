@@ -94,6 +94,13 @@ def fetch(
 
 @app.command("synth")
 def synth(
+    paths: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="[PATH]...",
+            help="Programs to copy: files, folders, .zip archives; default: corpus/programs.",
+        ),
+    ] = None,
     size: Annotated[
         str, typer.Option(metavar="BYTES", help="Total size: 500000, 300kB, 10MB, 1.5GB.")
     ] = "1MB",
@@ -103,19 +110,24 @@ def synth(
         typer.Option(metavar="DIR", help="Where to write; default: a folder in reports/out/synth."),
     ] = None,
 ) -> int:
-    """Write random valid programs, in whole cells, for tests of scale.
+    """Write programs in whole cells, for tests of scale.
 
-    The same size and seed give the same files everywhere. They are not evidence for a grammar.
+    Copies of the programs, with other names and numbers and some routines left out, and a tenth
+    random programs; where there is no corpus/ and none is named, all are random. The same programs,
+    size and seed give the same files everywhere. They are not evidence for a grammar.
     """
-    from grammar.generation.synthetic_corpus import write_cells
     from krl.terminal.progress import progress_bar
+    from recovery.bench.copies import write_corpus
+    from support.files.discovery import IngestError
 
     wanted = _bytes(size)
     folder = out or _SYNTHETIC / f"{wanted}-{seed}"
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: not a folder")
-    with progress_bar("writing", wanted) as advance:
-        written = write_cells(folder, wanted, seed, advance)
+    ours = CORPUS / "programs"
+    roots = paths or ([ours] if ours.is_dir() else [])
+    with progress_bar("writing", wanted) as advance, as_input_errors(IngestError):
+        written = write_corpus(roots, folder, wanted, seed, advance)
     files, cells = counted(written.files, "file"), counted(written.cells, "cell")
     typer.echo(one_line(f"{written.bytes:,} bytes in {files} of {cells} in {folder}"))
     others = sum(path.is_file() for path in folder.rglob("*")) - written.files

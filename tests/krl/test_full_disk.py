@@ -58,7 +58,7 @@ def test_a_survey_goes_on_after_the_disk_was_full(tmp_path: Path) -> None:
     ("words", "file"),
     [
         ("check --no-cache --format json --out {out}/c.sarif {given}", "c.sarif"),
-        ("corpus synth --size 40kB --out {out}", "0001_"),
+        ("corpus synth --size 40kB --out {out}", "assembly_1"),
         ("construct replay --out {out}/G.g4", "G.g4"),
     ],
 )

@@ -20,8 +20,6 @@ from support.measure.isolated import call_isolated
 from support.measure.speed import MB, machine
 
 _LARGEST: Final = 2_000
-#: The share of random programs; the others are copies.
-_SYNTHETIC: Final = 0.1
 #: What is measured.
 _COMMANDS: Final = {
     "recover": "recover --jobs 1 --no-start --out {out} {corpus}",
@@ -84,17 +82,11 @@ def _sizes(given: str) -> list[float]:
 
 
 def _write(roots: Sequence[Path], corpus: Path, size: int, seed: int) -> None:
-    from grammar.generation.synthetic_corpus import write_cells
-    from grammar.notation.krl_grammar import krl_grammar
-    from grammar.parser.failures import FailureFinder
-    from grammar.parser.recognizer import Recognizer
-    from recovery.bench.copies import templates, write_copies
-    from support.files.discovery import IngestError, source_files
+    from recovery.bench.copies import write_corpus
+    from support.files.discovery import IngestError
 
-    with as_input_errors(IngestError, ValueError):
-        chosen = list(templates(source_files(roots), FailureFinder(Recognizer(krl_grammar()))))
-        write_copies(chosen, corpus, round(size * (1 - _SYNTHETIC)), seed)
-    write_cells(corpus, round(size * _SYNTHETIC), seed)
+    with as_input_errors(IngestError):
+        write_corpus(roots, corpus, size, seed)
 
 
 def _measured(name: str, corpus: Path, out: Path) -> dict[str, Any]:

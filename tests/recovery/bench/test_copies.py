@@ -1,4 +1,4 @@
-"""Copies of programs for the benches."""
+"""Copies of programs."""
 
 import random
 from collections import Counter
@@ -9,14 +9,15 @@ import pytest
 from grammar.notation.krl_grammar import krl_grammar
 from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
-from recovery.bench.copies import Template, templates, write_copies
+from recovery.bench.copies import Template, templates, write_copies, write_corpus
 from support.files.discovery import source_files
 
 PROGRAM = """&ACCESS RVP
 DEF place_box1( )
   DECL INT count
   ;FOLD PTP P1 Vel=100 % {PE}
-  count = 12 + box1
+  count = 12.5 + box1.x
+  fr={x 0.05,y 0,z 120.5E1}
   $OUT[7] = TRUE
   mask = 'B0110'
   note[] = "part 12"
@@ -47,12 +48,12 @@ def copy(template: Template, number: int = 7) -> str:
 
 
 def test_copy_changes_names_and_numbers_only(tmp_path: Path) -> None:
-    """Keywords, system variables, constants, strings and comments of a copy stay as written."""
+    """Whole numbers and all names that others know stay: the copy is as valid as its program."""
     expected = (
         PROGRAM.replace("place_box1(", "place_box1_7(")
         .replace("count", "count_7")
-        .replace("12 + box1", "87 + box1_7")
-        .replace("$OUT[7]", "$OUT[2]")
+        .replace("12.5 + box1.x", "12.4 + box1_7.x")
+        .replace("  fr={x 0.05,y 0,z 120.5E1}", "  fr_7={x 0.04,y 0,z 120.4E1}")
         .replace("mask", "mask_7")
         .replace("note[]", "note_7[]")
         .replace("state", "state_7")
@@ -65,7 +66,7 @@ def test_copy_changes_names_and_numbers_only(tmp_path: Path) -> None:
 
 def test_failing_lines_keep_their_names(tmp_path: Path) -> None:
     """What fails is the same in every copy."""
-    expected = "DEF b_7()\ncount_7 = 8\nWAT count\nEND\n"
+    expected = "DEF b_7()\ncount_7 = 1\nWAT count\nEND\n"
     assert expected == copy(template_of(tmp_path, FAILING))
 
 
@@ -100,9 +101,23 @@ def test_corpus_has_the_size_and_no_content_twice(tmp_path: Path) -> None:
     assert a == b != c
 
 
-def test_programs_without_a_name_make_no_corpus(tmp_path: Path) -> None:
-    """Text without a name gives no template, and without templates nothing can be written."""
+def test_programs_without_a_name_make_no_copies(tmp_path: Path) -> None:
+    """Text without a name gives no template, and without templates nothing is written."""
     (tmp_path / "a.src").write_text("; 12\nEND\n", encoding="utf-8")
     assert [] == list(templates(source_files([tmp_path]), FINDER))
-    with pytest.raises(ValueError, match="no name"):
-        write_copies([], tmp_path, 1_000, 1)
+    assert 0 == write_copies([], tmp_path / "out", 1_000, 1).bytes
+
+
+@pytest.mark.parametrize("has_programs", [True, False])
+def test_a_tenth_of_a_corpus_is_random(tmp_path: Path, *, has_programs: bool) -> None:
+    """All of it is, where there is nothing to copy; whatever is written is reported and valid."""
+    template_of(tmp_path / "from", PROGRAM)
+    reported: list[int] = []
+    roots = [tmp_path / "from"] if has_programs else []
+    written = write_corpus(roots, tmp_path / "to", 40_000, 1, reported.append)
+    files = [path for path in (tmp_path / "to").rglob("*") if path.is_file()]
+    copies = [path for path in files if "OWNER" in str(path)]
+    assert has_programs == (36_000 <= sum(path.stat().st_size for path in copies))
+    assert (len(files), sum(reported)) == (written.files, written.bytes)
+    assert written.cells == len(list((tmp_path / "to").iterdir()))
+    assert all(FINDER.recognizer.accepts(path.read_text(encoding="utf-8")) for path in files)
