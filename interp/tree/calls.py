@@ -140,6 +140,10 @@ class Calls(Expressions):
                 value = yield from self.value(argument, type_)
             places.append(place)
             values.append(value)
+        # A later argument may have called a function that changes a variable passed by reference.
+        for number, place in enumerate(places):
+            if isinstance(place, LocalPlace):
+                values[number] = place.get()
         return places, values
 
     def _text(self, node: ast.Expression, wanted: Type) -> Steps[Value]:

@@ -247,3 +247,16 @@ def test_an_index_is_wrong_before_a_value_is_missing(go: Run, value: str) -> Non
         main_dat="DEFDAT main\nE6POS D\nREAL V[2]\nDECL FRAME F[1]\nENDDAT\n",
     )
     assert [1444] == [one.value for one in seen.steps if isinstance(one, Write)]
+
+
+def test_a_variable_passed_by_reference_has_the_value_that_a_later_argument_gave_it(
+    go: Run,
+) -> None:
+    """It is read when the predefined function begins, not when its own argument is evaluated."""
+    seen = go(
+        "DEF main()\nDECL STATE_T S\nINT O\nCHAR T[9]\nO=3\n"
+        'SWRITE(T[],S,O,"%d",AT_START(O))\n$TIMER[1]=O\nEND\n'
+        "DEFFCT INT AT_START(P:OUT)\nINT P\nP=0\nRETURN 7\nENDFCT\n"
+    )
+    assert isinstance(seen.last, End)
+    assert [1] == [one.value for one in seen.steps if isinstance(one, Write)]
