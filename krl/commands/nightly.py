@@ -254,12 +254,13 @@ def _steps(paths: list[Path], folder: Path, minutes: float) -> Iterator[_Step]:
         "growth", ("growth", *given, "--out", str(folder / "growth")), 0.15, "growth/index.html"
     )
     limits = {
-        "scale": ("--sizes", "5,10,20"),
-        "conform": ("--mutants", str(max(10, round(2 * minutes))), "--seed", seed),
+        "scale": ("--sizes", "4,8,16"),
+        "conform": ("--mutants", str(max(10, round(minutes / 2))), "--seed", seed),
     }
     for bench in ("recover", "check", "scale", "vm", "arm", "conform"):
         arguments = ("bench", bench, *(given if bench in ("recover", "check", "scale") else ()))
-        yield _Step(f"bench-{bench}", (*arguments, *limits.get(bench, ())), 0.15)
+        share = 0.25 if bench == "conform" else 0.15
+        yield _Step(f"bench-{bench}", (*arguments, *limits.get(bench, ())), share)
     sample = str(max(4, round(minutes / 2)))
     yield _Step(
         "bench-mutation", ("bench", "mutation", "--singles", sample, "--multiple", "4"), 0.2
