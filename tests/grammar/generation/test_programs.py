@@ -28,14 +28,8 @@ def test_programs_follow_from_their_number() -> None:
     assert seeded(3, 7) != seeded(4, 7)
 
 
-def test_every_program_is_valid() -> None:
-    """The project's own checker finds no error in any program."""
-    for number in range(20):
-        prepared(seeded(11, number).files)
-
-
 def test_every_program_ends_within_its_budget() -> None:
-    """No run uses up its statements, and none that is not disturbed executes more than it may."""
+    """The check finds no error, and no run executes more statements than it may."""
     size = Size()
     limits = Limits(statements=size.budget * 2, per_slice=25)
     for number in range(16):
@@ -49,13 +43,10 @@ def test_every_program_ends_within_its_budget() -> None:
 
 def test_all_of_the_language_is_written() -> None:
     """Every statement, variant, operator and function comes up in some thousand programs."""
-    text = "\n".join(body for number in range(1500) for _, body in seeded(1, number).files)
-    words = set(re.findall(r"[A-Z][A-Z0-9_]*", text))
     known = language()
-    assert set() == set(known["function"]) - words
-    singles = {name for name in known["variant"] if re.fullmatch(r"[A-Z_]+", name)}
-    assert set() == singles - words
-    patterns = {
+    missing = {
+        *(rf"\b{name}\b" for name in known["function"]),
+        *(rf"\b{name}\b" for name in known["variant"] if re.fullmatch(r"[A-Z_]+", name)),
         *(rf"INTERRUPT {word}\b" for word in ("ON", "OFF", "ENABLE", "DISABLE")),
         *(rf"{word} {way} " for word in ("ANIN", "ANOUT", "DIGIN") for way in ("ON", "OFF")),
         *(rf"{edge} ?=" for edge in ("START", "PART", "END", "DISTANCE", "PATH", "PRIO")),
@@ -64,8 +55,13 @@ def test_all_of_the_language_is_written() -> None:
         r"\w+=STRLEN\((\w+\[\])\) ?\+ ?STRADD\(\1",
         *(r"RETURN [^\n]", r"\nEND\n", r"ONSTART", r":OUT", r":IN", r"\[,\]", r"\[,,\]", "RESUME"),
         *(re.escape(f" {one} ") for one in known["operator"] if not one.startswith("sign")),
-    } - {re.escape(" : ")}
-    assert set() == {one for one in patterns if not re.search(one, text)}
+    }
+    for number in range(1500):
+        for _, text in seeded(1, number).files:
+            missing = {one for one in missing if not re.search(one, text)}
+        if not missing:
+            break
+    assert set() == missing
 
 
 class _First(Choices):
