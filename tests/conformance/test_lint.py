@@ -17,11 +17,6 @@ def citing(rule: str, expected: str) -> str:
     return GOOD.replace("CTL-01", rule).replace("runs 1", expected)
 
 
-def test_own_cases_are_well_formed() -> None:
-    """Nothing is found in the cases of this project."""
-    assert [] == lint()
-
-
 def test_every_hard_rule_has_a_case(own_cases: list[Case]) -> None:
     """A rule that may fail has a case, or says why none can show it."""
     covered = coverage(own_cases)

@@ -17,6 +17,7 @@ from conformance.differential.random_world import RandomWorld
 from conformance.differential.reduction import reduce_program, statements_of
 from conformance.differential.runs import EXECUTORS, LIMITS, Prepared, available, trace_of
 from conformance.differential.traces import plain, shown
+from conformance.suite import case
 from grammar.generation.programs import seeded
 from grammar.semantics.types import INT, Array
 from interp.bytecode._generated.opcodes import Op
@@ -71,27 +72,6 @@ def test_findings_do_not_depend_on_processes(monkeypatch: pytest.MonkeyPatch) ->
 
 
 # ------------------------------------------------------------------------------- reduction
-
-
-def test_difference_is_reduced(
-    wrong: Callable[[Op, Op], None], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A program on which executors diverge is made small, and they still diverge."""
-    wrong(Op.MUL_INT, Op.ADD_INT)
-    monkeypatch.setattr(campaign, "_MOST_REDUCED", 1)
-    found = fuzz(4, 6, ["tree", "vm"])
-    assert found.findings
-    small = found.findings[0]
-    assert small.statements is not None
-    assert small.statements <= 10
-    assert small.difference.expected != small.difference.actual
-    program = prepared(small.files)
-    worlds = (campaign.world_seed(6, small.number, n) for n in range(campaign._SEEDS))
-    assert any(
-        diverged(program, "vm", trace_of(program, EXECUTORS["tree"], world), world)
-        for world in worlds
-    )
-    assert "*" in "".join(text for _, text in small.files)
 
 
 def test_reduction_keeps_what_holds() -> None:
@@ -259,15 +239,24 @@ def test_command_with_differences(
     capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Exit status 1, each program reduced and shown with what both sides did."""
+    """Exit status 1; a program is made small and shown with what both sides, still apart, did."""
     wrong(Op.MUL_INT, Op.ADD_INT)
     monkeypatch.setattr(campaign, "_MOST_REDUCED", 1)
+    monkeypatch.setattr(case, "find_cases", list)
     target = tmp_path / "fuzz.json"
     arguments = [*"fuzz --programs 4 --seed 6 --jobs 1 --json".split(), str(target)]
     assert 1 == main([*arguments, "--executor", "tree", "--executor", "vm"])
     first = json.loads(target.read_text(encoding="utf-8"))["differences"][0]
     assert "vm" == first["executor"]
     assert first["statements"] <= 10
+    assert first["expected"] != first["actual"]
+    assert "*" in "".join(first["files"].values())
+    program = prepared(tuple(first["files"].items()))
+    worlds = (campaign.world_seed(6, first["program"], n) for n in range(campaign._SEEDS))
+    assert any(
+        diverged(program, "vm", trace_of(program, EXECUTORS["tree"], world), world)
+        for world in worlds
+    )
     out = capsys.readouterr().out
     assert first["expected"] in out
     assert "reduced to" in out
