@@ -1,6 +1,7 @@
 """Notes on a finished run: stand-ins, skipped lines, contacts."""
 
 import re
+from collections import Counter
 from collections.abc import Iterator
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
 
 _MOST_LISTED = 3
 _START_REFUSED = 1443
+#: Kinds of messages of programs that an operator has to deal with, as a trace writes them.
+_ASKING = ("quit", "dialogue", "state", "waiting")
 #: The kinds of events that notes look at.
 NOTED = frozenset({"fault", "message"})
 
@@ -43,6 +46,8 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     if done.outcome.ending == "time" and setup.patience <= done.outcome.time < setup.until:
         stood = f"{setup.patience / 1e6:g} s"
         yield f"the arm has stood still for {stood}; --until S goes on for longer"
+    if done.outcome.ending in ("time", "budget"):
+        yield from _asked(done)
     if done.outcome.ending == "time":
         for line in dict.fromkeys(done.controller.unfulfilled):
             yield f"waited for: {line}"
@@ -73,6 +78,17 @@ def _waiting(outcome: "RunOutcome", program: "CheckedProgram") -> Iterator[str]:
     text = unit.source.line(at.line).strip()
     if re.match(r"WAIT\s+FOR\b", text, re.IGNORECASE):
         yield f"waited for: {text}; --io auto fulfils waits, --io SCRIPT sets inputs"
+
+
+def _asked(done: "RunResult") -> Iterator[str]:
+    """Yield what programs asked of an operator: a program without an end often repeats it."""
+    asked = Counter(
+        (event.place, event.fields["text"])
+        for event in done.events
+        if event.kind == "message" and event.fields["type"] in _ASKING
+    )
+    for (place, text), times in asked.most_common(_MOST_LISTED):
+        yield f"message: {place}: {text}" + (f", {times} times" if times > 1 else "")
 
 
 def refused(done: "RunResult") -> Iterator["TraceEvent"]:

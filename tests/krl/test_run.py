@@ -175,6 +175,24 @@ def test_programs_that_only_serve_end(run: Run) -> None:
     assert ("main.src: time limit after 50 s at main.src:2\n", False) == (out, "stood" in err)
 
 
+def test_what_a_program_without_an_end_asked_is_listed(run: Run) -> None:
+    """Messages for an operator are listed with how often they came; notifications are not."""
+    lines = """DECL KRLMSG_T MSG
+DECL KRLMSGPAR_T PAR[3]
+DECL KRLMSGOPT_T OPT
+INT H
+MSG={MODUL[] "P00",NR 7,MSG_TXT[] "Wrong mode"}
+LOOP
+H=SET_KRLMSG(#QUIT,MSG,PAR[],OPT)
+H=SET_KRLMSG(#NOTIFY,MSG,PAR[],OPT)
+WAIT SEC 1
+ENDLOOP
+"""
+    _, _, err = run(lines, "--until", "4.5")
+    assert "message: main.src:8: Wrong mode, 5 times\n" == err
+    assert "message: main.src:8: Wrong mode\n" == run(lines, "--until", "0.5")[2]
+
+
 def test_strict(run: Run) -> None:
     """With --strict an error of the checker is told in one line with status 2, and nothing runs."""
     status, out, err = run("DECL INT I\nI=TRUE\n", "--strict")
