@@ -89,14 +89,15 @@ def _sources(root: Path) -> "list[Source]":
 
     if root.as_posix() == _NOWHERE:
         return []
-    found = []
     with as_input_errors(IngestError):
-        for one in map(read_source, discover([root])):
-            if isinstance(one, Skipped):
-                typer.echo(shown(f"left out {one.path}: {one.reason}"), err=True)
-                continue
-            path = one.path.removeprefix(root.as_posix()).lstrip("/") or root.name
-            found.append(Source(one.text, path))
+        read = [*map(read_source, discover([root]))]
+    found = []
+    for one in read:
+        if isinstance(one, Skipped):
+            typer.echo(shown(f"left out {one.path}: {one.reason}"), err=True)
+            continue
+        path = one.path.removeprefix(root.as_posix()).lstrip("/") or root.name
+        found.append(Source(one.text, path))
     return found
 
 

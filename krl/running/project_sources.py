@@ -65,17 +65,25 @@ def _discovered(root: Path) -> "list[Found]":
 
 
 def _named(file: Path, found: "Sequence[Found]") -> "Found":
-    """Return the file at a path; raises `InputError` if it was not found."""
+    """Return the file at a path; raises `InputError` if it was not found.
+
+    In an archive the letter case counts only if files differ in nothing else, as on a controller.
+    """
     from support.files.discovery import printable
 
     if file.is_file():
         place = file.resolve()
         one = next((one for one in found if one.member is None and one.file == place), None)
+        where = ""
     else:
-        path = PurePosixPath(printable(file.as_posix()))
-        one = next((one for one in found if one.member and PurePosixPath(one.path) == path), None)
+        path = printable(file.as_posix())
+        folded = PurePosixPath(path.casefold())
+        inside = (one for one in found if one.member)
+        same = [one for one in inside if PurePosixPath(one.path.casefold()) == folded]
+        one = max(same, key=lambda one: one.path == path, default=None)
+        where = " of this name in the archive"
     if one is None:
-        raise InputError(f"{file}: no KRL program")
+        raise InputError(f"{file}: no KRL program{where}")
     return one
 
 

@@ -228,6 +228,10 @@ def prepared_run(
         robot_file=own.file,
         scene=own.scene,
     )
+    if len(left) > _MOST_LISTED:  # what this run can reach comes first
+        reached = program.reached(*program.starts(options.routine, submit))
+        paths = {unit.module.path for unit in reached}
+        left = sorted(left, key=lambda why: why.partition(":")[0] not in paths)
     for why in left[:_MOST_LISTED]:
         typer.echo(one_line(f"left out: {why}"), err=True)
     if len(left) > _MOST_LISTED:

@@ -44,6 +44,15 @@ def test_the_same_is_no_difference(
     assert "2 and 2 files: nothing changed" == capsys.readouterr().out.rstrip()
 
 
+def test_a_side_without_programs_is_told_in_one_line(
+    states: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What cannot be compared is refused once."""
+    (tmp_path / "note.txt").write_text("a note", encoding="utf-8")
+    assert 2 == main(["diff", states[0], str(tmp_path / "note.txt")])
+    assert 1 == capsys.readouterr().err.count("\n")
+
+
 def test_file_that_went_is_counted(
     states: tuple[str, str], capsys: pytest.CaptureFixture[str]
 ) -> None:

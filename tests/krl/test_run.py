@@ -430,6 +430,22 @@ def test_program_in_an_archive(run: Run, tmp_path: Path) -> None:
     assert "R1/Program/go.src: halt after 0 s at R1/System/help.src:2\n" == out
 
 
+def test_letter_case_of_a_path_in_an_archive(run: Run, tmp_path: Path) -> None:
+    """It does not count, unless files differ in nothing else; a wrong name is told as such."""
+    backup = tmp_path / "backup.zip"
+    with ZipFile(backup, "w") as archive:
+        archive.writestr("KRC/R1/Go.src", "DEF go ( )\nHALT\nEND\n")
+    assert 0 == run(None, str(backup / "krc/r1/GO.SRC"))[0]
+    _, _, err = run(None, str(backup / "KRC/R1/stop.src"))
+    assert err.endswith("stop.src: no KRL program of this name in the archive\n")
+    with ZipFile(backup, "a") as archive:
+        archive.writestr("KRC/r1/go.src", "DEF go ( )\n\nHALT\nEND\n")
+    assert [2, 3] == [
+        int(run(None, str(backup / name))[1].rpartition(":")[2])
+        for name in ("KRC/R1/Go.src", "KRC/r1/go.src")
+    ]
+
+
 def test_data_in_an_archive(run: Run, tmp_path: Path) -> None:
     """Files of an archive go by their names: a data list belongs to its program."""
     with ZipFile(tmp_path / "backup.zip", "w") as archive:
@@ -641,6 +657,16 @@ def test_files_that_are_left_out(run: Run, tmp_path: Path) -> None:
     assert "main.src: halt" in out
     assert err.startswith("left out: ")
     assert "other.src:2: " in err
+
+
+def test_left_out_lines_that_a_run_reaches_come_first(run: Run, tmp_path: Path) -> None:
+    """Three are listed: those of the routines that are called before those of other files."""
+    for name in ("a", "b", "c", "used"):
+        (tmp_path / f"{name}.src").write_text(f"DEF {name} ( )\nIF\nEND\n", encoding="utf-8")
+    _, _, err = run("used ( )\n")
+    assert ["used", "a", "b", "1 more lines and files of the project"] == [
+        line.removeprefix("left out: ").partition(".src:")[0] for line in err.splitlines()[:4]
+    ]
 
 
 @pytest.mark.parametrize("line", ["IF = THEN\nENDIF", "FOR I=1 TOO 3\nENDFOR", "DECL INT ="])
