@@ -74,6 +74,12 @@ _FORMS: Final = {
     re.compile(r"^ *ENDSPLINE +C_", re.IGNORECASE | re.MULTILINE): "SPL-01.b alone has a criterion",
     re.compile(r"\bDO\b[^(;\n]*=[^;\n]*\bPRIO\b", re.IGNORECASE): "only a call has a priority",
 }
+#: What only a clause of recollection allows, by this clause.
+_DOUBTFUL: Final = {
+    "SCO-07.b": re.compile(r"(?:\(|, *)\w[\w.]*(?:\[\d+\]\.\w+)?\[[^\],]+,\]"),
+    "TYP-04.b": re.compile(r"'(?:[hb]|[HB][0-9A-F]*[a-f])"),
+    "TYP-18.c": re.compile(r'VARSTATE\("[^"]*\[\w|VARTYPE\("[^"]*[.\[]', re.IGNORECASE),
+}
 #: A wait for some time.
 _TIMED: Final = re.compile(r"\bWAIT +SEC +0*\.?0*[1-9]", re.IGNORECASE)
 #: The syntax of message numbers in expectations, and in rules, as in "3214 to 3217".
@@ -165,6 +171,7 @@ def _defects(case: Case) -> Iterator[str]:
     yield from _clause_defects(case)
     yield from _error_defects(case)
     yield from _refusals(case)
+    yield from _doubtful_lines(case)
     yield from _periods(case)
     yield from _form_defects(case)
 
@@ -239,14 +246,24 @@ def _untimed(clause: Rule | Clause, one: Expectation, when: When) -> str:
 def _refusals(case: Case) -> Iterator[str]:
     """Yield that a program which the check refuses is expected to run: a controller refuses it.
 
-    Machine data are written by the controller itself.
+    One that is only to be parsed, too. Machine data are written by the controller itself.
     """
-    if case.phase != "run" or not case.may_fail:
+    if case.phase == "check" or case.expects_syntax_error or not case.may_fail:
         return
     for one in observe(replace(case, phase="check"), Setup(FRONT, "none")).findings:
         is_refused = one.severity == "error" and not one.may_come_late(one.code)
         if is_refused and one.file.lower() != "$machine.dat":
-            yield f"{one.file}:{one.line}: {one.code} refuses what is expected to run"
+            yield f"{one.file}:{one.line}: {one.code} refuses what a controller has to take"
+
+
+def _doubtful_lines(case: Case) -> Iterator[str]:
+    """Yield that a hard expectation stands on a line, or behind it, that is not surely allowed."""
+    for source in case.sources:
+        for number, line in enumerate(source.text.splitlines(), start=1):
+            said = case.said_of(source.path, number, behind=True)
+            for one, written in _DOUBTFUL.items():
+                if written.search(re.sub(";.*", "", line)) and any(map(case.is_sure, said)):
+                    yield f"{source.path}:{number}: only {one} allows it, and it is not said so"
 
 
 def _periods(case: Case) -> Iterator[str]:

@@ -81,18 +81,7 @@ def _refusals(case: Case, seen: Observation) -> Iterator[Check]:
         if found.severity == "error":
             actual = f"{found.code} {found.message}"
             check = Check(found.file, found.line, "the program is loaded", "unmet", actual)
-            yield _resting_on(_said_of(case, seen, check), case, check)
-
-
-def _said_of(case: Case, seen: Observation, check: Check) -> list[Expectation]:
-    """Return what is expected at a line, or for a controller at the next line that says something.
-
-    A line about which nothing is said prepares what is: nothing else says that it is possible.
-    """
-    lines = [one.line for one in case.expectations if one.file == check.file]
-    later = [line for line in lines if line >= check.line]
-    line = min(later, default=check.line) if seen.watched is not None else check.line
-    return [one for one in case.expectations if (one.file, one.line) == (check.file, line)]
+            yield _resting_on(case.said_of(found.file, found.line, behind=True), case, check)
 
 
 def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
@@ -234,7 +223,8 @@ def _unexpected_errors(case: Case, seen: Observation) -> Iterator[Check]:
             text = "no error but those expected"
             actual = f"{found.code} {found.message}"
             check = Check(found.file, found.line, text, "unmet", actual)
-            said = () if seen.watched is None else _said_of(case, seen, check)
+            is_recorded = seen.watched is not None
+            said = case.said_of(found.file, found.line, behind=True) if is_recorded else ()
             yield _resting_on(said, case, check)
 
 
@@ -277,7 +267,8 @@ def _unexpected_ending(case: Case, seen: Observation) -> Iterator[Check]:
         if seen.ending == "crash":
             yield check
         else:
-            yield _resting_on(causes or _said_of(case, seen, check), case, check)
+            said = case.said_of(check.file, check.line, behind=seen.watched is not None)
+            yield _resting_on(causes or said, case, check)
 
 
 def _resting_on(causes: Sequence[Expectation], case: Case, check: Check) -> Check:

@@ -98,6 +98,15 @@ class Case:
         """Return whether the basis of an expectation is certain enough to fail the case."""
         return basis(one.basis or self.basis or self.rules[0]).may_fail and not self.unconfirmed
 
+    def said_of(self, file: str, line: int, *, behind: bool) -> list[Expectation]:
+        """Return what is expected at a line, or ``behind``: at the next line that says something.
+
+        A line about which nothing is said prepares that: nothing else says that it is possible.
+        """
+        there = {one.line for one in self.expectations if one.file == file and one.line >= line}
+        at = min(there, default=line) if behind else line
+        return [one for one in self.expectations if (one.file, one.line) == (file, at)]
+
     @property
     def expects_syntax_error(self) -> bool:
         """Whether it expects a syntax error."""

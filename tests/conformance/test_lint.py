@@ -107,8 +107,15 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
         (
             *("control/good.src", "HALT ;> runs 1"),
             "PTP_SPLINE ;> runs 1\n    SLIN {X 1}\n  ENDSPLINE",
-            "KSS2380 refuses what is expected to run",
+            "KSS2380 refuses what a controller has to take",
         ),
+        (
+            *("control/good.src", "run\nDEF good()\n  HALT ;> runs 1"),
+            "parse\nDEF good()\n  NOWHERE() ;> accepted",
+            "KRL102 refuses what a controller has to take",
+        ),
+        ("control/good.src", "HALT", "$OUT['Ha'] = TRUE", "good.src:5: only TYP-04.b allows it"),
+        ("control/good.src", "HALT", "WORK(T[1,])\n  HALT", "good.src:5: only SCO-07.b allows it"),
     ],
 )
 def test_faults_are_found(tmp_path: Path, name: str, old: str, new: str, part: str) -> None:
