@@ -64,15 +64,15 @@ def evaluate(case: Case, seen: Observation) -> list[Check]:
         replace(check, is_sure=case.is_sure(one), basis=one.basis or case.basis)
         for check, one in zip(found, case.expectations, strict=True)
     ]
-    ending = list(_unexpected_ending(case, seen)) if is_run else []
-    every = _unexpected_outputs(case, seen) if is_run else _unexpected_errors(case, seen)
-    if seen.watched is not None and any(not check.is_sure for check in ending):
+    every = list(_unexpected_ending(case, seen) if is_run else _unexpected_errors(case, seen))
+    if seen.watched is not None and any(not check.is_sure for check in every):
         begun = {(event.file, event.line) for event in seen.events}
         expected = [
             replace(check, is_sure=check.is_sure and (check.file, check.line) in begun)
             for check in expected
         ]
-    return [*expected, *every, *ending, *_law_violations(case, seen)]
+    outputs = _unexpected_outputs(case, seen) if is_run else ()
+    return [*expected, *outputs, *every, *_law_violations(case, seen)]
 
 
 def _refusals(case: Case, seen: Observation) -> Iterator[Check]:

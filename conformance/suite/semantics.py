@@ -107,6 +107,7 @@ _SOURCES = """\
 | T42 | m.elecfans.com/article/2078130: BRAKE; excerpt only |
 | T43 | wxredian.com/art?id=437c338c679012684d4d9d393ecc8696: analogue outputs; excerpt only |
 | T44 | m.elecfans.com/article/2097891: analogue outputs, from a manual; excerpt only |
+| T45, T46 | m.elecfans.com/article/2063709: structures; asorrir.com/d/2369151.html: validity |
 | F1 to F4 | robot-forum.com on blending (14422), triggers (34556), axes (24428), REAL (35090) |
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
 | F6 | robot-forum.com on velocities in T1 (43227) |

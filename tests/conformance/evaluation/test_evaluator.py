@@ -196,6 +196,15 @@ def test_what_a_controller_refused_for_a_doubtful_clause_hides_the_rest() -> Non
         assert sure == [one.line for one in found if one.is_sure]
 
 
+@pytest.mark.parametrize(("line", "verdict"), [(2, "unconfirmed"), (9, "fail")])
+def test_what_a_controller_refuses_may_hide_what_it_should(line: int, verdict: str) -> None:
+    """An error at a line that only recollection allows explains that others are not told."""
+    asked = case("error KSS2052", phase="check", more={2: "silent KRL114 [TYP-08.e]"})
+    error = Finding("a.src", line, "error", "")
+    seen = Observation(findings=(error,), is_exact=False, watched=frozenset())
+    assert verdict == verdict_of(evaluate(asked, seen))[0]
+
+
 @pytest.mark.parametrize(("line", "verdict"), [(4, "unconfirmed"), (6, "fail")])
 def test_a_program_that_a_controller_does_not_load(line: int, verdict: str) -> None:
     """That it is loaded is as sure as what is expected at the line of the error, or behind it."""
