@@ -52,7 +52,7 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
         ("control/good.src", "HALT", "HALT ; é", "ASCII"),
         ("control/good.src", "HALT", "HALT ;" + 90 * "x", "longer than 100"),
         ("control/good.src", "HALT", "HALT HALT", "not grammatical"),
-        ("control/good.src", "HALT", "HALT\n  SPLINE\n  ENDSPLINE C_SPL", "good.src:6: SPL-01.b"),
+        ("control/good.src", "HALT", "HALT\n  SPLINE\n  ENDSPLINE C_SPL", "good.src:7: SPL-01.b"),
         (
             "control/good.src",
             "HALT",
