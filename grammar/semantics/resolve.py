@@ -81,6 +81,7 @@ class _Walk:
         self.answers: dict[ast.Name, Answer] = {}
         self.unknown_members: list[ast.Name] = []
         self._open: list[tuple[Space | None, ast.Name]] = []
+        self._known: dict[tuple[Scope, Space, str], Answer] = {}
         self._members: dict[Found, dict[str, Answer]] = {}
 
     def resolve(self, scope: Scope, nodes: Iterable[ast.Node]) -> None:
@@ -110,7 +111,11 @@ class _Walk:
 
     def name(self, scope: Scope, name: ast.Name, space: Space) -> Answer:
         """Look up one name and record the answer."""
-        answer = self.answers[name] = scope.find(space, name.text.upper())
+        place = scope, space, name.text
+        answer = self._known.get(place)
+        if answer is None:
+            answer = self._known[place] = scope.find(space, name.text.upper())
+        self.answers[name] = answer
         if type(answer) is not Found:
             self._open.append((space, name))
         return answer

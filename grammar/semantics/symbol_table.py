@@ -27,7 +27,7 @@ from grammar.semantics.symbols import (
 )
 from grammar.semantics.types import UNKNOWN, Array
 from grammar.syntax import ast
-from grammar.syntax.references import Space, calls_in
+from grammar.syntax.references import Space
 from grammar.syntax.walk import BODIES, bodies
 
 #: Machine data that are upper limits of what programs set; their values are stored.
@@ -51,8 +51,8 @@ def table_of(module: ast.Module) -> ModuleTable:
         scope.add(Space.ROUTINE, inner.routine)
         routines.append(inner)
     name = content.routines[0].name
-    calls = calls_in(content.routines)
-    return ModuleTable(name.text, name.span, False, False, scope.table(), tuple(routines), calls)
+    own, calls = scope.table(), module.called
+    return ModuleTable(name.text, name.span, False, False, own, tuple(routines), calls)
 
 
 def _access_in(content: ast.DataList) -> Mapping[bool, Access]:

@@ -769,7 +769,8 @@ class Header(Node):
 
 @node
 class Module(Node):
-    """One file."""
+    """One file; ``called`` are the routines that it calls, in upper case."""
 
     headers: tuple[Header, ...]
     content: Program | DataList
+    called: frozenset[str] = frozenset()

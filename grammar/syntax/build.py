@@ -10,6 +10,7 @@ A span never includes the line end after a statement.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from operator import add
 from typing import Any, NamedTuple
@@ -95,6 +96,7 @@ class Builder:
         names, plans = self._names, self._plans
         frame = _Frame(tree.outline, 0)
         outer: list[_Frame] = []
+        called: set[str] = set()
         at = end = 0  # index of the next token; end offset of the last one that was no line end
         while True:
             pieces = frame.pieces
@@ -113,6 +115,8 @@ class Builder:
                     value = plan.run(lexemes, starts, ends, at)
                     start, end = starts[at], ends[at + plan.width - 1]
                     pieces.append(_Piece(child.rule, value, start, end))
+                    if plan.calls:
+                        called.update(lexemes[at + token].upper() for token in plan.calls)
                     at += child.width
                 else:
                     outer.append(frame)
@@ -122,7 +126,7 @@ class Builder:
                 value = _BLOCKS[frame.rule]((frame.start, end), pieces)
                 if not outer:
                     assert isinstance(value, ast.Module)
-                    return value
+                    return replace(value, called=frozenset(called))
                 piece = _Piece(frame.rule, value, frame.start, end)
                 frame = outer.pop()
                 frame.pieces.append(piece)

@@ -17,7 +17,7 @@ from operator import itemgetter
 from typing import Any, NamedTuple
 
 from grammar.parser.tree import Outline
-from grammar.syntax.ast import Span
+from grammar.syntax.ast import Call, Span
 from support.lazy_dataclass import dataclass
 
 #: Greatest depth of nodes within a line; a chain of operators counts once. Code that walks an
@@ -125,7 +125,9 @@ class Draft:
             (make, _getter([at_spans + span, *map(final, slots)]))
             for make, span, slots in self._steps
         )
-        return Plan(width, constants, tuple(self._spans), steps, final(result))
+        spans = tuple(self._spans)
+        calls = tuple(spans[span][0] for make, span, _ in self._steps if make is Call)
+        return Plan(width, constants, spans, steps, final(result), calls)
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +135,8 @@ class Plan:
     """Builds the nodes of all lines with one outline, which has ``width`` tokens.
 
     ``spans`` are the first and the last token of nodes; each of the ``steps`` is what makes a node,
-    and what takes its span and its parts from the values.
+    and what takes its span and its parts from the values. ``calls`` are the tokens that name the
+    routines called.
     """
 
     width: int
@@ -141,6 +144,7 @@ class Plan:
     spans: tuple[Span, ...]
     steps: tuple[tuple[Callable[..., object], Callable[[list[Any]], Any]], ...]
     result: int
+    calls: tuple[int, ...]
 
     def run(
         self, lexemes: Sequence[str], starts: Sequence[int], ends: Sequence[int], first: int

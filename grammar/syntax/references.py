@@ -54,7 +54,7 @@ _LEFT_OUT: dict[type[ast.Node], set[str]] = {
     ast.ExternalParameter: {"name"},
     ast.Importation: {"path", "source"},
 }
-_TEXTS = {"str", "str | None", "tuple[str, ...]", "int", "bool"}
+_TEXTS = {"str", "str | None", "tuple[str, ...]", "int", "bool", "frozenset[str]"}
 
 
 def _below(kind: type[ast.Node]) -> tuple[str, ...]:

@@ -34,7 +34,9 @@ def children(node: Node) -> Sequence[Node]:
     return found
 
 
-_PLAIN = frozenset({"Span", "str", "int", "bool", "str | None", "int | None", "bool | None"})
+_PLAIN = frozenset(
+    {"Span", "str", "int", "bool", "str | None", "int | None", "bool | None", "frozenset[str]"}
+)
 #: The fields of each kind of node that may hold nodes.
 _INNER: Mapping[type[Node], tuple[str, ...]] = {
     kind: tuple(field.name for field in fields(kind) if field.type not in _PLAIN)

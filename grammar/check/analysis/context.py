@@ -175,14 +175,13 @@ class Context:
     def used(self) -> frozenset[Found]:
         """The symbols that the file uses, except where a name declares or announces one."""
         announced = {symbol.span for symbol in self.table.externals.values()}
-        places = [
-            (answer, name)
+        return frozenset(
+            answer
             for name, answer in self.resolution.answers.items()
-            if type(answer) is Found and name.span not in announced
-        ]
-        # of several places the one that declares it is not both the first and the last
-        ends = (*dict(places).items(), *dict(reversed(places)).items())
-        return frozenset(found for found, name in ends if found.symbol.span != name.span)
+            if type(answer) is Found
+            and name.span != answer.symbol.span
+            and name.span not in announced
+        )
 
     @cached_property
     def spelling(self) -> Spelling:

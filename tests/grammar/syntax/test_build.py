@@ -57,7 +57,8 @@ def outline(value: object) -> str:
         case tuple():
             return f"[{' '.join('-' if item is None else outline(item) for item in value)}]"
         case ast.Node():
-            parts = [(f.name, getattr(value, f.name)) for f in fields(value) if f.name != "span"]
+            names = [f.name for f in fields(value) if f.name not in ("span", "called")]
+            parts = [(name, getattr(value, name)) for name in names]
             shown = [
                 name if part is True else f"{name}={outline(part)}"
                 for name, part in parts
@@ -325,6 +326,21 @@ def test_declarations(text: str, expected: str) -> None:
     """A declaration becomes the same in a routine and in a data list."""
     assert [expected] == [outline(statement) for statement in statements(text)]
     assert [expected] == [outline(item) for item in items(text)]
+
+
+def test_called_routines() -> None:
+    """A module knows what it calls, wherever it does, and not what it defines or announces."""
+    text = """DEF A( )
+    EXT E( )
+    b(C(1), X[D( )])
+    IF F( ) THEN
+    TRIGGER WHEN DISTANCE=0 DELAY=0 DO g( ) PRIO=5
+    ENDIF
+    END
+    DEF H( )
+    END
+    """
+    assert frozenset("BCDFG") == module_of(text).called
 
 
 def test_initial_values() -> None:
