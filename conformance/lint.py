@@ -77,6 +77,10 @@ _FORMS: Final = {
 #: What only a clause of recollection allows, by this clause.
 _DOUBTFUL: Final = {
     "SCO-07.b": re.compile(r"(?:\(|, *)\w[\w.]*(?:\[\d+\]\.\w+)?\[[^\],]+,\]"),
+    "TYP-08.e": re.compile(
+        r"^ *(?:GLOBAL +)?STRUC +\w+ +(?:.*,)? *(?!CHAR\b)\w+ +(?:\w+(?:\[\d+\])?, *)*\w+\[",
+        re.IGNORECASE,
+    ),
     "TYP-04.b": re.compile(r"'(?:[hb]|[HB][0-9A-F]*[a-f])"),
     "TYP-18.c": re.compile(r'VARSTATE\("[^"]*\[\w|VARTYPE\("[^"]*[.\[]', re.IGNORECASE),
 }

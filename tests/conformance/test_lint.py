@@ -115,6 +115,8 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
             "KRL102 refuses what a controller has to take",
         ),
         ("control/good.src", "HALT", "$OUT['Ha'] = TRUE", "good.src:5: only TYP-04.b allows it"),
+        ("control/good.src", "  HALT", "STRUC S INT N, L[2]\n  HALT", "only TYP-08.e allows it"),
+        ("control/good.src", "  HALT", "STRUC S CHAR A[2], B[3], INT N\n  HALT", ""),
         ("control/good.src", "HALT", "WORK(T[1,])\n  HALT", "good.src:5: only SCO-07.b allows it"),
     ],
 )
