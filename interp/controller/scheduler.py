@@ -26,7 +26,7 @@ from interp.controller.spline_stops import SplineStops
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.executor import SliceScheduling
-from interp.port.requests import At, Crash, End, Fail, Poll, Request, Slice, StopAdvance, Wait
+from interp.port.requests import At, Crash, End, Fail, Request, Slice, StopAdvance
 from interp.robot.simulation.robot import RobotFault
 from interp.values.faults import BudgetExhausted, Fault, LinkError, RuntimeFailure
 from support.lazy_dataclass import dataclass
@@ -231,11 +231,7 @@ class Scheduler:
                     answer = self._answer(task, task.executor.advance(task.reply))
                 elif blocked.is_ready():
                     task.blocked = None
-                    if blocked.wake is None or isinstance(blocked.request, Wait | Poll):
-                        task.busy_at = self.state.clock.now  # it waited, and polled nothing
-                        if not blocked.is_postponed:
-                            task.unbroken = 0
-                            task.executor.waited()
+                    self.waits.waited(task, blocked)
                     self.state.trace.origin = task.name, blocked.request.at
                     changes = self._changes
                     answer = blocked.finish()

@@ -128,6 +128,14 @@ class Waits:
         """Return whether a program has changed nothing for some time."""
         return self._state.clock.now - task.busy_at >= IDLE_AFTER
 
+    def waited(self, task: Task, blocked: Blocked) -> None:
+        """Note that a program has waited: it is in no endless loop, unless it only polled."""
+        if blocked.wake is None or isinstance(blocked.request, Wait | Poll):
+            task.busy_at = self._state.clock.now
+            if not blocked.is_postponed:
+                task.unbroken = 0
+                task.executor.waited()
+
     def acted(self, task: Task, request: Request, *, has_changed: bool) -> None:
         """Note that a request was answered, which may have changed something.
 
