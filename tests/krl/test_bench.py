@@ -60,6 +60,7 @@ def test_a_corpus_is_needed(
     assert "krl: there is no corpus/ here: name files, folders or .zip archives\n" == said
 
 
+@pytest.mark.slow
 def test_scale_measures_both_commands_at_each_size(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
