@@ -54,15 +54,6 @@ class Choices(ABC):
             return weighted.items[0]
         return weighted.items[bisect(limits, self.below(limits[-1]))]
 
-    def few(self, items: Sequence[_T], count: int) -> Sequence[_T]:
-        """Return ``count`` different items in their order, or all if there are no more."""
-        if count >= len(items):
-            return items
-        left = list(range(len(items)))
-        return [
-            items[place] for place in sorted(left.pop(self.below(len(left))) for _ in range(count))
-        ]
-
 
 class SeededChoices(Choices):
     """Decisions from a seed that are the same on every machine and Python release.

@@ -142,8 +142,8 @@ class _Programs:
     def _types(self) -> list[str]:
         """Return the declarations of global types."""
         return [
-            *(enumeration(one, is_global=True) for one in (COLOUR, MODE)),
-            *(structure_definition(self.choices, one, is_global=True) for one in (POINT, RECORD)),
+            *(enumeration(one) for one in (COLOUR, MODE)),
+            *(structure_definition(self.choices, one) for one in (POINT, RECORD)),
         ]
 
     def _data_list(

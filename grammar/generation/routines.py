@@ -73,20 +73,20 @@ def constant_datum(
     return f"DECL {word}CONST {type_name(type_)} {name}={value}"
 
 
-def enumeration(type_: Enumeration, *, is_global: bool) -> str:
-    """Return the definition of an enumeration."""
-    return f"{'GLOBAL ' if is_global else ''}ENUM {type_.name} {','.join(type_.constants)}"
+def enumeration(type_: Enumeration) -> str:
+    """Return the definition of a global enumeration."""
+    return f"GLOBAL ENUM {type_.name} {','.join(type_.constants)}"
 
 
-def structure_definition(choices: Choices, type_: Structure, *, is_global: bool) -> str:
-    """Return the definition of a structure; members of one type may share its name."""
+def structure_definition(choices: Choices, type_: Structure) -> str:
+    """Return the definition of a global structure; members of one type may share its name."""
     groups: list[str] = []
     before = ""
     for member in type_.members:
         name, written = type_name(member.type), declarator(member.type, member.name)
         groups.append(written if name == before and choices.chance(50) else f"{name} {written}")
         before = name
-    return f"{'GLOBAL ' if is_global else ''}STRUC {type_.name} {','.join(groups)}"
+    return f"GLOBAL STRUC {type_.name} {','.join(groups)}"
 
 
 # ------------------------------------------------------------------------- routines

@@ -18,12 +18,3 @@ def test_chances() -> None:
     choices = SeededChoices("chances")
     assert [False] * 50 == [choices.chance(0) for _ in range(50)]
     assert [True] * 50 == [choices.chance(100) for _ in range(50)]
-
-
-def test_few_are_different_and_in_order() -> None:
-    """As many as asked for are chosen, none twice, in the order given; all where there are less."""
-    choices = SeededChoices("few")
-    chosen = list(choices.few(range(100), 10))
-    assert 10 == len(set(chosen))
-    assert sorted(chosen) == chosen
-    assert [1, 2] == list(choices.few([1, 2], 5))
