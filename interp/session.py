@@ -85,7 +85,7 @@ class RunSetup:
     ``is_tolerant``: where another arm stands in for one whose machine data is not understood, or a
     declaration for one that the project lacks, the controller skips motions that cannot be planned
     and predefined routines that are not simulated, and where it ``skips_failures`` also all other
-    statements that fail, unless somebody debugs.
+    statements that fail.
     """
 
     executor: str = "tree"
@@ -173,7 +173,7 @@ def run_program(
     sink, submit_sink = _sinks(trace, program, setup)
     limits = replace(
         setup.limits or Limits(per_slice=profile.statements),
-        skips_failures=setup.skips_failures and is_incomplete and debugger is None,
+        skips_failures=setup.skips_failures and is_incomplete,
     )
     executor = prepared.executor(setup.executor, limits, sink)
     if debugger is not None:

@@ -31,7 +31,7 @@ from interp.debugging.inspection import Inspection
 from interp.debugging.value_text import value_text
 from interp.debugging.watches import Watches
 from interp.port.inspection import Breaks
-from interp.port.requests import Fail
+from interp.port.requests import Fail, Skip
 from interp.program.load import CheckedProgram, Routine
 from interp.program.statement_paths import routine_at, way_to
 from interp.values.faults import LinkError, RuntimeFailure
@@ -200,12 +200,15 @@ class Debugger(Inspection):
         stop = self._reason_to_stop(executor)
         return None if stop is None else self._handle_stop(executor, stop)
 
-    def fails(self, executor: DebuggedExecutor, request: Fail) -> None:
-        """Stop at a fault that the program does not handle."""
+    def fails(self, executor: DebuggedExecutor, request: Fail | Skip) -> None:
+        """Stop at a fault that the program does not handle, or at a statement that is skipped."""
         self._history.comes(self._begun_count())
-        self._end_search_at(None)
+        is_last = isinstance(request, Fail)
+        if is_last:
+            self._end_search_at(None)
         if self.stops_at_faults and not self._history.is_repeating:
-            stop = Stop("fault", executor.task, request.at, text=str(request.fault))
+            text = str(request.fault) if is_last else f"{request.fault}; to continue is to skip it"
+            stop = Stop("fault", executor.task, request.at, text=text)
             self._handle_stop(executor, stop)
 
     def _end_search_at(self, executor: DebuggedExecutor | None) -> None:
@@ -342,8 +345,10 @@ class Debugger(Inspection):
 
     def _reason_against(self, selected: Select, executor: DebuggedExecutor, stop: Stop) -> str:
         """Return why a line cannot be selected; "" if it can."""
-        if self._is_ended or stop.reason == "fault":
+        if self._is_ended:
             return "the program has ended"
+        if stop.reason == "fault":
+            return "the statement has failed: go back to before it"
         if selected.task not in (None, executor.task):
             return f"the {executor.task} has stopped here: a line can be selected in it alone"
         frame = executor.inside.frames()[0]

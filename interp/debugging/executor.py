@@ -13,7 +13,17 @@ from interp.controller.state.trace import TaskName
 from interp.port.events import Sink
 from interp.port.executor import Executor, Reader
 from interp.port.inspection import Breaks, Inspectable
-from interp.port.requests import At, CodeHandle, End, Fail, Request, Slice, StopAdvance, Value
+from interp.port.requests import (
+    At,
+    CodeHandle,
+    End,
+    Fail,
+    Request,
+    Skip,
+    Slice,
+    StopAdvance,
+    Value,
+)
 from interp.values.faults import Fault
 
 
@@ -31,7 +41,7 @@ class Hook(Protocol):
     def begins(self, executor: DebuggedExecutor, /) -> int | None:
         """See a statement that is about to begin; return the line of another one to select."""
 
-    def fails(self, executor: DebuggedExecutor, request: Fail, /) -> None:
+    def fails(self, executor: DebuggedExecutor, request: Fail | Skip, /) -> None:
         """See a failure."""
 
     def around(self, inside: Any, per_slice: int, task: TaskName, /) -> DebuggedExecutor:
@@ -98,7 +108,7 @@ class DebuggedExecutor:
             elif isinstance(request, End) and self._actions:
                 self._again = self._actions.pop()[1]
                 return request
-            elif isinstance(request, Fail):
+            elif isinstance(request, Fail | Skip):
                 hook.fails(self, request)
             if not isinstance(request, End):
                 self._due = inside.begun + self._per_slice

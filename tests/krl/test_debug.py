@@ -52,6 +52,39 @@ def said(
     return status, found.out.splitlines()
 
 
+@pytest.mark.parametrize("executor", ["tree", "vm", "native"])
+def test_a_failure_in_an_incomplete_project(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    executor: str,
+) -> None:
+    """It is a stop; the program continues behind it as in `krl run`, and the way back passes it."""
+    file = tmp_path / "main.src"
+    lines = ("DEF MAIN()", "INT I", "GONE()", "I=0", "I=1/I", "I=7", "END", "")
+    file.write_text("\n".join(lines), encoding="utf-8")
+    fault = "fault: division by zero; to continue is to skip it"
+    commands = ("c", "goto 6", "c", "p I", "bs", "p I", "bs", "p I", "bs", "c", "n", "q")
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n".join(commands) + "\n"))
+    assert 0 == main(["debug", str(file), "--executor", executor])
+    said = [
+        line
+        for line in capsys.readouterr().out.splitlines()
+        if not line.startswith(("message: ", "0 s; "))
+    ]
+    assert [
+        *("entry", "main.src:3 GONE()"),
+        *(fault, "main.src:5 I=1/I"),
+        *("refused: the statement has failed: go back to before it", "main.src:5 I=1/I"),
+        *("ended: end after 0 s at main.src:6", "7"),
+        *("back", "main.src:6 I=7", "0"),
+        *("back", "main.src:5 I=1/I", "0"),
+        *("back", "main.src:4 I=0"),
+        *(fault, "main.src:5 I=1/I"),
+        *("step", "main.src:6 I=7"),
+    ] == said
+
+
 def test_breakpoints_values_and_the_way_back(
     program: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
