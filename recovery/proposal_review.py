@@ -44,15 +44,16 @@ class Reviewer:
     def _record(self, proposal: Proposal, files: Sequence[SurveyedFile]) -> ProposalRecord:
         grammar = self.found.grammar
         last = proposal.edits[-1]
+        wider = self.wider(proposal)
         return {
             "edit": "; ".join(describe(grammar, edit) for edit in proposal.edits),
             "kind": str(to_data(last)["edit"]),
-            "restores": self._restores(proposal, files),
+            "restores": self._restores(wider, files),
             "mends": len(proposal.mended),
             "advances": len(proposal.advanced),
             "accepts_negatives": proposal.accepts_negatives,
-            "ambiguities": self._ambiguities(proposal),
-            "breaks": self._breaks(proposal),
+            "ambiguities": self._ambiguities(wider, proposal),
+            "breaks": self._breaks(wider, proposal),
             "edits": [to_data(edit) for edit in proposal.edits],
             "diff": self._diff(proposal),
         }
@@ -65,16 +66,14 @@ class Reviewer:
         )
         return "\n".join(lines)
 
-    def _restores(self, proposal: Proposal, files: Sequence[SurveyedFile]) -> int:
+    def _restores(self, wider: Recognizer | None, files: Sequence[SurveyedFile]) -> int:
         """Files that really parse with the proposal alone: they are read again."""
-        wider = self.wider(proposal)
         if wider is None:
             return 0
         return sum(len(f.places) for f in files if wider.accepts("\n".join(f.lines())))
 
-    def _ambiguities(self, proposal: Proposal) -> int:
+    def _ambiguities(self, wider: Recognizer | None, proposal: Proposal) -> int:
         """Return the lines that the proposal makes readable in two ways."""
-        wider = self.wider(proposal)
         if wider is None:
             return 0
         lines = sorted(
@@ -91,12 +90,11 @@ class Reviewer:
                 count += is_ambiguous(wider, start, kinds)
         return count
 
-    def _breaks(self, proposal: Proposal) -> int:
+    def _breaks(self, wider: Recognizer | None, proposal: Proposal) -> int:
         """Files that parse now and would not: only a newly reserved word can do that."""
         words = _reserved(proposal)
         if not words:
             return 0
-        wider = self.wider(proposal)
         assert wider is not None
         files = {file.digest: file for word in words for file in self._readers_of[word]}
         return sum(

@@ -94,11 +94,10 @@ LONGEST_SEGMENTED = 120
 TOKEN_COST = 10
 OPERAND_COST = 9
 SEAM_COST = 30
-#: Answers about segments and rules that are kept. Bound on memory.
+#: Answers about segments and rules, and about lines under edits, that are kept. Bound on memory.
 MOST_ANSWERS_KEPT = 200_000
 #: Alignments, and lines with their sites, that are kept. Bound on memory.
 MOST_ALIGNMENTS_KEPT = 2_000
-MOST_SITED_LINES_KEPT = 300
 #: Tokens of a beginning from which longer ones are read on. Bound on memory.
 LONGEST_BEGINNING_KEPT = 24
 #: Tokens of a phrase. Bound.

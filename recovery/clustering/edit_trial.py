@@ -24,6 +24,7 @@ from recovery.clustering.joint_trial import DetourReader, Path
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import (
     LINES_READ_TWICE,
+    MOST_ANSWERS_KEPT,
     MOST_CONFIGURATIONS_KEPT,
     MOST_CONFIGURATIONS_TRIED,
     MOST_RECOGNIZERS_KEPT,
@@ -90,6 +91,9 @@ class EditTrial:
         paths = Paths(recognizer.network)
         self._prefix: dict[Frames, list[int]] = {}
         self._wider: dict[tuple[Edit, ...], Recognizer | None] = {}
+        #: Of each trial the index at which a line fails, so that no line is read again.
+        self._known: dict[tuple[Edit, ...], dict[int, int | None]] = defaultdict(dict)
+        self._answers = 0
         self._forget_paths()
         self._by_rule: dict[str, list[int]] = defaultdict(list)
         self._by_keyword: dict[str, set[int]] = defaultdict(set)
@@ -178,13 +182,19 @@ class EditTrial:
         if among is not None:
             wanted = frozenset(among)
             chosen = [n for n in chosen if n in wanted]
-        mended, advanced = [], []
-        for number, failed in self._failures(edits, chosen):
-            if failed is None:
-                mended.append(number)
-            elif failed > self.lines[number].form.index:
-                advanced.append(number)
-        return TrialResult(frozenset(mended), frozenset(advanced))
+        if self._answers > MOST_ANSWERS_KEPT:
+            self._known.clear()
+            self._answers = 0
+        known = self._known[tuple(edits)]
+        new = [n for n in chosen if n not in known]
+        if new:
+            known |= dict.fromkeys(new, 0)  # none can be read further by a misfit
+            known |= self._failures(edits, new)
+            self._answers += len(new)
+        return TrialResult(
+            frozenset(n for n in chosen if known[n] is None),
+            frozenset(n for n in chosen if (known[n] or 0) > self.lines[n].form.index),
+        )
 
     def _failures(
         self, edits: Sequence[Edit], numbers: Iterable[int]

@@ -29,7 +29,7 @@ from recovery.proposals.site_finder import EditSiteFinder
 from recovery.tuning import (
     BLOCK_PART_BONUS,
     BREADTH_FACTOR,
-    MOST_SITED_LINES_KEPT,
+    MOST_ALIGNMENTS_KEPT,
     NO_LINE_RULE_COST,
     SAME_RULE_FACTOR,
     UNLIKELY_COST,
@@ -65,7 +65,9 @@ class CandidateFinder:
         self._blocks = BlockFinder(self.profile, self._aligner)
         self.similarity = Similarity(self.profile)
         self._site_finder = EditSiteFinder(self.profile, self.similarity, self.phraser)
-        self._sites: dict[LinePattern, list[EditSite | RankedEdits]] = {}
+        self._sites: dict[
+            LinePattern, tuple[dict[_Slot, EditSite], dict[tuple[Edit, ...], int]]
+        ] = {}
 
     def find_common(
         self, lines: Sequence[LinePattern], most: int, core: int = 0
@@ -76,34 +78,31 @@ class CandidateFinder:
         text written there reads what all of the lines have in common, what the first ``core`` of
         them have, or what one of them has.
         """
-        slots: dict[_Slot, dict[int, list[EditSite]]] = defaultdict(lambda: defaultdict(list))
+        slots: dict[_Slot, dict[int, EditSite]] = defaultdict(dict)
         support: dict[tuple[Edit, ...], set[int]] = defaultdict(set)
         ranks: dict[tuple[Edit, ...], int] = {}
         for number, line in enumerate(lines):
-            for found in self._sites_of(line):
-                if isinstance(found, EditSite):
-                    any_sign = found.kind == "repetition"
-                    first = "" if any_sign else self._sign(found.words) or ""
-                    slots[found.kind, found.rule, found.place, first][number].append(found)
-                else:
-                    rank, edits = found
-                    support[edits].add(number)
-                    ranks[edits] = min(rank, ranks.get(edits, rank))
+            sites_of_line, whole = self._sites_of(line)
+            for slot, site in sites_of_line.items():
+                slots[slot][number] = site
+            for edits, rank in whole.items():
+                support[edits].add(number)
+                ranks[edits] = min(rank, ranks.get(edits, rank))
         promising = sorted(
             slots.items(),
             key=lambda slot: (
-                -_gain_expected(len(slot[1]), min(o[0].rank for o in slot[1].values())),
+                -_gain_expected(len(slot[1]), min(site.rank for site in slot[1].values())),
                 slot[0],
             ),
         )
-        for _, choices_of_lines in promising[:most]:
-            sites = [sites[0] for sites in choices_of_lines.values()]
-            nearer = [sites[0] for number, sites in choices_of_lines.items() if number < core]
+        for _, having in promising[:most]:
+            sites = list(having.values())
+            nearer = [site for number, site in having.items() if number < core]
             written = [*self._of_slot(sites), *self._of_site(sites[0])]
             if nearer and len(nearer) < len(sites):
                 written += self._of_slot(nearer)
             for rank, edits in written:
-                support[edits] |= choices_of_lines.keys()
+                support[edits] |= having.keys()
                 ranks[edits] = min(rank, ranks.get(edits, rank))
         expected = {edits: _gain_expected(len(support[edits]), ranks[edits]) for edits in ranks}
         in_rule: Counter[str] = Counter()
@@ -117,12 +116,24 @@ class CandidateFinder:
         ordered = sorted(varied, key=lambda e: (-varied[e], spelled[e]))
         return [Candidate(edits, ranks[edits]) for edits in ordered]
 
-    def _sites_of(self, line: LinePattern) -> list[EditSite | RankedEdits]:
-        if line not in self._sites:
-            if len(self._sites) >= MOST_SITED_LINES_KEPT:
+    def _sites_of(
+        self, line: LinePattern
+    ) -> tuple[dict[_Slot, EditSite], dict[tuple[Edit, ...], int]]:
+        """Return the first site of a line in each slot, and its complete edits with their ranks."""
+        known = self._sites.get(line)
+        if known is None:
+            if len(self._sites) >= MOST_ALIGNMENTS_KEPT:
                 self._sites.clear()
-            self._sites[line] = list(self._site_finder.find(line))
-        return self._sites[line]
+            known = self._sites[line] = {}, {}
+            for found in self._site_finder.find(line):
+                if isinstance(found, EditSite):
+                    any_sign = found.kind == "repetition"
+                    first = "" if any_sign else self._sign(found.words) or ""
+                    known[0].setdefault((found.kind, found.rule, found.place, first), found)
+                else:
+                    rank, edits = found
+                    known[1][edits] = min(rank, known[1].get(edits, rank))
+        return known
 
     def find_blocks(
         self, line: LinePattern, opener: str, texts: Sequence[str], meant: frozenset[str]

@@ -92,7 +92,7 @@ class SuspectedKeywords:
         """``failures`` are all of a survey, with the digests of their files; read repeatedly."""
         self.lexer = recognizer.lexer
         self._recognizer = recognizer
-        self._left_out: dict[Form, bool] = {}
+        self._places: dict[int, list[tuple[int, bool]]] = {}
         self._sole = self._sole_words(failures)
         self._often: Counter[str] = Counter()
         for _, failed, form in failures:
@@ -105,7 +105,7 @@ class SuspectedKeywords:
                 odd.update(place for place, _ in run)
                 if self._explains(run, form):
                     self._count(found[word], digest, failed.words, form.kinds, place)
-            for place, word in names_of_line(failed.words, form.kinds, self.lexer):
+            for place, word, _ in self._names(failed, form):
                 # where the line fails no name can be
                 found[word].plain += place not in odd and place != form.index
         self._words = frozenset(
@@ -120,19 +120,32 @@ class SuspectedKeywords:
         strongest = {self._strongest(run) for run in runs if self._explains(run, form)}
         return tuple(
             (place, word)
-            for place, word in names_of_line(failed.words, form.kinds, self.lexer)
+            for place, word, _ in self._names(failed, form)
             if word in self._words and (place == form.index > 0 or (place, word) in strongest)
         )
 
     def _runs(self, failed: FailingLine, form: Form) -> list[list[tuple[int, str]]]:
         """Return the names of a line that are used like keywords, those side by side together."""
         runs: list[list[tuple[int, str]]] = []
-        for place, word in names_of_line(failed.words, form.kinds, self.lexer):
-            if self._stands_out(form, place, word):
+        for place, word, stands_out in self._names(failed, form):
+            if stands_out or (place == form.index and word in self._sole):
                 if not runs or runs[-1][-1][0] < place - 1:
                     runs.append([])
                 runs[-1].append((place, word))
         return runs
+
+    def _names(self, failed: FailingLine, form: Form) -> Iterator[tuple[int, str, bool]]:
+        """Yield the names that may be keywords: index, word, whether it is used like one."""
+        places = self._places.get(failed.form)
+        if places is None:
+            signs = [self._sign(form.kinds, place) for place in range(len(form.kinds))]
+            names = names_of_line(signs, form.kinds, self.lexer)
+            places = [(place, self._stands_out(form, place)) for place, _ in names]
+            self._places[failed.form] = places
+        for place, stands_out in places:
+            for word in failed.words[place : place + 1]:
+                if not word.startswith("$"):
+                    yield place, word, stands_out
 
     def _strongest(self, run: Sequence[tuple[int, str]]) -> tuple[int, str]:
         """Return the name of a run that most lines have: one word too many explains the others."""
@@ -179,7 +192,7 @@ class SuspectedKeywords:
             if place == 0:
                 _add(uses.led, digest, SUSPECTED_FILES)
 
-    def _stands_out(self, form: Form, place: int, word: str) -> bool:
+    def _stands_out(self, form: Form, place: int) -> bool:
         """Return whether a name is used like a keyword.
 
         It lacks the sign that a name in an expression has beside it, or stands where other lines
@@ -187,8 +200,6 @@ class SuspectedKeywords:
         follows a sign or a keyword. A name directly before or after an operand is one word too
         many.
         """
-        if place == form.index and word in self._sole:
-            return True
         if place == 0:
             sign = self._sign(form.kinds, 1)
             return not sign or sign in _BEGINS_OPERAND
@@ -201,13 +212,10 @@ class SuspectedKeywords:
 
     def _may_be_left_out(self, form: Form) -> bool:
         """Return whether a line that fails at a keyword can be read on without the name before."""
-        found = self._left_out.get(form)
-        if found is None:
-            kinds = (*form.kinds[: form.index - 1], *form.kinds[form.index : form.index + 2])
-            found = self._left_out[form] = self.lexer.is_keyword(form.kinds[form.index]) and (
-                self._recognizer.run(self._recognizer.restore(form.before), kinds)[1] is None
-            )
-        return found
+        kinds = (*form.kinds[: form.index - 1], *form.kinds[form.index : form.index + 2])
+        return self.lexer.is_keyword(form.kinds[form.index]) and (
+            self._recognizer.run(self._recognizer.restore(form.before), kinds)[1] is None
+        )
 
     def _sign(self, kinds: Sequence[int], place: int) -> str:
         """Return the sign at an index; empty if there is none."""
