@@ -24,14 +24,12 @@ from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import (
     ADVANCED_WEIGHT,
     ALL_ALIKE_FACTOR,
-    AMBIGUOUS_FACTOR,
     BREADTH_FACTOR,
-    BREAKS_FILES_FACTOR,
+    FLAW_FACTOR,
     KEPT,
     KEPT_LIGHT,
     KEPT_PER_RESULT,
     KEPT_PER_RULE,
-    LEFT_A_NAME_FACTOR,
     LINE_WEIGHT,
     MOST_PROPOSALS,
     MOST_SCORED,
@@ -40,6 +38,7 @@ from recovery.tuning import (
     MOST_TRIED_LIGHT,
     NARROW_PER_SITE,
     OTHER_GROUP_WEIGHT,
+    OTHER_WORDS_FACTOR,
     SAMPLE_LINES,
     SPECIMENS,
     STILL_NAMES_PART,
@@ -74,6 +73,8 @@ class CauseSearch:
         self.is_thorough = True
         self._sought: frozenset[int] = frozenset()
         self._has_words = False  # whether all lines in question have words the grammar lacks
+        self._weight = 0  # of the lines in question, and in ``_having`` of those with each word
+        self._having: Counter[str] = Counter()
         self.open = {n for n, line in enumerate(lines) if not line.is_enormous}
         self._meant = frozenset(word for line in lines for _, word in line.keywords)
         self.same_token: dict[tuple[int, str | None], list[int]] = defaultdict(list)
@@ -115,6 +116,11 @@ class CauseSearch:
         """Make the lines those in question; return them."""
         self._sought = frozenset(lines)
         self._has_words = all(self.lines[n].keywords for n in lines)
+        self._weight = sum(self.weights[n] for n in self._sought)
+        self._having.clear()
+        for n in self._sought:
+            for word in {word for _, word in self.lines[n].keywords}:
+                self._having[word] += self.weights[n]
         return self._sought
 
     def best_from_scratch(self, lines: Sequence[int]) -> Cause | None:
@@ -279,11 +285,14 @@ class CauseSearch:
         return mended + further * ADVANCED_WEIGHT + others * OTHER_GROUP_WEIGHT
 
     def _worth(self, candidate: Candidate | Proposal, result: TrialResult | Proposal) -> float:
-        """Return the gain, reduced for breadth and for a word that is left a name."""
+        """Return the gain, reduced for breadth and for words that are not what the lines lack."""
         factor = BREADTH_FACTOR**candidate.breadth
-        if self._has_words and not any(isinstance(edit, AddToken) for edit in candidate.edits):
-            factor *= LEFT_A_NAME_FACTOR
+        words = [edit.name for edit in candidate.edits if isinstance(edit, AddToken)]
+        if self._has_words and not words:
+            factor *= OTHER_WORDS_FACTOR
             result = replace(result, advanced=frozenset())  # it fails at what the word belongs to
+        if words and 2 * sum(self._having[word] for word in words) < self._weight:
+            factor *= OTHER_WORDS_FACTOR
         return self._gain(result) * factor
 
     def _kept(self, results: list[tuple[Candidate, TrialResult]]) -> list[tuple[Candidate, int]]:
@@ -340,10 +349,8 @@ class CauseSearch:
             worth[p.edits] = self._worth(p, p) * part
             if p.mended.issuperset(alike):
                 worth[p.edits] *= ALL_ALIKE_FACTOR
-            if self._loses(p.edits):
-                worth[p.edits] *= BREAKS_FILES_FACTOR
-            if self.trial.is_ambiguous(p.edits, p.mended):
-                worth[p.edits] *= AMBIGUOUS_FACTOR
+            flaws = self._loses(p.edits) + self.trial.is_ambiguous(p.edits, p.mended & self._sought)
+            worth[p.edits] *= FLAW_FACTOR**flaws
         return sorted(proposals, key=lambda p: (negatives[p.edits], -worth[p.edits], str(p.edits)))
 
 

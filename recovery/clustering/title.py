@@ -45,12 +45,16 @@ class TitleWriter:
         lead = self._keyword(line, 0)
         came = meant.get(index) or self._phrase(kinds[index])
         missing = self._omitted_keyword(line, context)
-        if not missing and 0 not in meant:
-            missing = self._left_out(best)
+        rule, left_out = ("", "") if missing or meant else self._left_out(best)
         at_end = kinds[index] in self._ends
-        if missing:
+        early = next((word for place, word in line.keywords if 0 < place < index), "")
+        if missing or self._is_keyword(left_out):
             subject = context.rule if index or at_end else came
-            said = f"{lead or _spoken(subject)} without {missing}"
+            said = f"{lead or _spoken(subject)} without {missing or left_out}"
+        elif " " in left_out:  # a part with a sign or word of its own
+            said = f"{_spoken(rule)} without {left_out}"
+        elif early:  # read as a name, so the line failed later
+            said = f"{lead} with {early}" if lead else f"unknown keyword {early}"
         elif 0 in meant and index <= 1:
             followers = {self._keyword(other, 1) for other in others or (line,)}
             follower = followers.pop() if len(followers) == 1 else ""
@@ -123,6 +127,8 @@ class TitleWriter:
         before = line.form.kinds[line.form.index - 1]
         if bracket:
             is_first = before == self._kind_of.get(bracket)
+            if not is_first and self._lexer.is_sign(before) and self._lexer.display[before] != ",":
+                came = f"{self._phrase(before)} followed by {came}"
             where = (
                 f"right behind '{bracket}'" if is_first else f"in '{bracket}{BRACKETS[bracket]}'"
             )
@@ -143,14 +149,17 @@ class TitleWriter:
         phrases = [self._phrase(self._kind_of[text]) for text in wanted]
         return f" where {' or '.join(phrases)} is expected"
 
-    def _left_out(self, best: Proposal | None) -> str:
-        """Return the keyword that a proposal makes optional, if it does nothing else."""
+    def _left_out(self, best: Proposal | None) -> tuple[str, str]:
+        """Return the rule and the text that a proposal makes optional, if it does nothing else."""
         match best.edits if best else ():
-            case [MakeOptional(rule=name, at=at, count=1)]:
+            case [MakeOptional(rule=name, at=at, count=count)]:
                 rule = self._recognizer.grammar.by_name[name]
-                text = rule.source_of(element_at(rule, at))
-                return text if self._lexer.is_keyword(self._kind_of.get(text, ERROR)) else ""
-        return ""
+                places = [(*at[:-1], at[-1] + n) for n in range(count)]
+                return name, " ".join(rule.source_of(element_at(rule, one)) for one in places)
+        return "", ""
+
+    def _is_keyword(self, text: str) -> bool:
+        return self._lexer.is_keyword(self._kind_of.get(text, ERROR))
 
     def _omitted_keyword(self, line: LinePattern, context: FailureContext) -> str:
         """Return the only keyword that would make the line readable before the failing token."""

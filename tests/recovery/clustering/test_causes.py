@@ -6,13 +6,14 @@ from random import Random
 
 import pytest
 
-from grammar.notation.edits import Edit
+from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, NegativeCounter, Rivals
 from recovery.clustering.causes import find_causes
 from recovery.clustering.edit_trial import EditTrial
+from recovery.clustering.search import CauseSearch
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
 
@@ -173,6 +174,29 @@ def test_among_equals_the_most_restrictive_comes_first(all_causes: list[Cause]) 
         best = cause.proposals[0]
         equals = [p for p in cause.proposals if p.mended == best.mended]
         assert min(p.breadth for p in equals) == best.breadth
+
+
+def first_edits(lines: Sequence[str], *proposals: tuple[tuple[Edit, ...], int]) -> tuple[Edit, ...]:
+    """The edits that rank first for lines, of edits with their breadth that all mend them."""
+    search = CauseSearch(RECOGNIZER, lines_of(*lines), [1] * len(lines), nothing_wrong)
+    found = [search.proposal(edits, breadth) for edits, breadth in proposals]
+    assert {frozenset(range(len(lines)))} == {proposal.mended for proposal in found}
+    return search.ranked(found, range(len(lines)))[0].edits
+
+
+def test_words_that_most_lines_lack_are_reserved_by_no_first_proposal() -> None:
+    """One line of four has the word as a type: the others do not fail for it."""
+    plain = (Insert("declaration", (1, 4), "(',' NAME)*"),)
+    form = "DECL (BOOL | INT | REAL | STEP) NAME (',' NAME)* eol"
+    reserving = (AddToken("STEP"), AddAlternative("declaration", form))
+    assert plain == first_edits([*LISTS, "DECL STEP A,B"], (plain, 18), (reserving, 13))
+
+
+def test_a_second_reading_of_the_lines_costs_more_than_breadth() -> None:
+    """What a value and an expression read alike is ambiguous, though it is called narrower."""
+    plain = (Insert("return", (1, 2), "expression?"),)
+    twice = (Insert("return", (1, 2), "(literal | expression)?"),)
+    assert plain == first_edits(RETURNS, (plain, 30), (twice, 5))
 
 
 def test_every_group_is_reported_done() -> None:

@@ -35,7 +35,8 @@ def cluster_of(*lines: str, closer: str = "END\n") -> Cluster:
         ("X[1,2]=3", "',' in '[]'"),
         ("X[,]=3", "',' right behind '['"),
         ("A=F(1,X[2,3])", "',' in '[]'"),
-        ("PTP {A1 0}", "PTP with an integer in '{}' where ':' is expected"),
+        ("PTP {A1 0}", "Aggregate without NAME ':'"),
+        ("A[-B]=3", "'-' followed by a name in '[]' where an integer or a real number is expected"),
         ("?", "A character without a token begins a line"),
         ("FOO", "A name alone on a line"),
         ("A=B*+C", "'*' followed by '+'"),
@@ -77,6 +78,7 @@ def test_a_keyword_left_out_is_named() -> None:
             "Unknown keyword GLOBAL before INTERRUPT",
         ),
         (tuple(f"FOR I=1 TO 9 STEP {n}" for n in "ABCD"), "FOR with STEP"),
+        (tuple(f"DECL CONST INT A{n}" for n in range(8)), "DECL with CONST"),
     ],
 )
 def test_a_word_that_no_rule_knows_is_taken_for_a_keyword(
