@@ -1,8 +1,27 @@
 """What the tests of several commands share."""
 
+from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+from conformance.suite import case
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _own_cases_are_read_once() -> Iterator[None]:
+    """Each command that runs cases reads all of the project first: here the first one only."""
+    read: Callable[..., list[case.Case]] = case.find_cases
+    own = cache(read)
+
+    def find_cases(*given: Any) -> list[case.Case]:
+        return read(*given) if given else list(own())
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(case, "find_cases", find_cases)
+        yield
 
 
 @pytest.fixture
