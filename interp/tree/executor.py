@@ -189,7 +189,6 @@ class TreeExecutor:
             self._popped(active)
             below = active.interrupted
             self._resumed_at_end = (below.final or below.resumed_at_end) if below else None
-        self._run.guard = Guard.OFF
         self._open, self._resumed = None, Resumed()
 
     # ----------------------------------------------------------------------- inspection
