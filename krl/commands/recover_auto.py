@@ -12,6 +12,7 @@ import typer
 from krl.construct_ledger import expected_errors
 from krl.errors import FINE, InputError
 from krl.terminal.output_files import write_json
+from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
     from grammar.notation.edits import Edit
@@ -120,7 +121,7 @@ def recover_auto(
             **compared(ledger.grammar, goal, shown, held, language),
         }
     page = written.write(is_finished, reached)
-    typer.echo(f"{out / 'grammar.g4'}: {len(ledger.constructs)} steps; {page}")
+    typer.echo(f"{out / 'grammar.g4'}: {counted(len(ledger.constructs), 'step')}; {page}")
     return FINE
 
 
@@ -320,7 +321,7 @@ def _say(number: int, ledger: "InducedLedger") -> None:
     typer.echo(
         f"round {number}: {_share(last['shown'])} of the files shown parse"
         + (f", {_share(last['held'])} of those held out" if last["held"]["files"] else "")
-        + f"; {len(last['taken'])} steps taken"
+        + f"; {counted(len(last['taken']), 'step')} taken"
     )
 
 

@@ -25,6 +25,7 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     from interp.robot.models import default_machine
     from interp.robot.models.stand_in import NO_MACHINE
     from interp.standins.completion import summary
+    from reports.rendering.number_format import counted
 
     usual = f"{NO_MACHINE}: {default_machine().name} is used instead"
     used = program.used_stand_ins(*program.starts(setup.routine, setup.submit))
@@ -37,7 +38,8 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     for (file, number), error in islice(skipped.items(), _MOST_LISTED):
         yield f"skipped: {file}:{number}: {error}"
     if len(skipped) > _MOST_LISTED:
-        yield f"skipped: {len(skipped) - _MOST_LISTED} more lines, see --trace or --html"
+        more = counted(len(skipped) - _MOST_LISTED, "more line")
+        yield f"skipped: {more}, see --trace or --html"
     for event in islice(refused(done), _MOST_LISTED):
         yield f"{event.task} program: {event.place}: {event.fields['text']}"
     yield from _seen(done)

@@ -235,9 +235,7 @@ def prepared_run(
     for why in left[:_MOST_LISTED]:
         typer.echo(one_line(f"left out: {why}"), err=True)
     if len(left) > _MOST_LISTED:
-        typer.echo(
-            f"left out: {len(left) - _MOST_LISTED} more lines and files of the project", err=True
-        )
+        typer.echo(f"left out: {len(left) - _MOST_LISTED} more in the project", err=True)
     return program, setup
 
 

@@ -659,12 +659,19 @@ def test_files_that_are_left_out(run: Run, tmp_path: Path) -> None:
     assert "other.src:2: " in err
 
 
+def test_failures_that_are_not_listed_are_counted(run: Run) -> None:
+    """Of the statements that failed and were skipped three are listed."""
+    _, _, err = run("GONE ( )\n$OUT[0]=1/0\n$OUT[0]=2/0\n$OUT[0]=3/0\n$OUT[0]=4/0\n")
+    said = [line for line in err.splitlines() if line.startswith("skipped: ")]
+    assert (4, "skipped: 1 more line, see --trace or --html") == (len(said), said[-1])
+
+
 def test_left_out_lines_that_a_run_reaches_come_first(run: Run, tmp_path: Path) -> None:
     """Three are listed: those of the routines that are called before those of other files."""
     for name in ("a", "b", "c", "used"):
         (tmp_path / f"{name}.src").write_text(f"DEF {name} ( )\nIF\nEND\n", encoding="utf-8")
     _, _, err = run("used ( )\n")
-    assert ["used", "a", "b", "1 more lines and files of the project"] == [
+    assert ["used", "a", "b", "1 more in the project"] == [
         line.removeprefix("left out: ").partition(".src:")[0] for line in err.splitlines()[:4]
     ]
 
