@@ -1,11 +1,12 @@
 """Mutation testing of the cases: faults are put into the executors, one at a time, and noticed.
 
-``survivors.tsv`` is what `krl bench conform --group none --survivors` left over of 1,000 mutants
-that had not been seen: `--mutants 400 --seed 1796000382` and `--mutants 300 --seed 1796001702
---seed 1796001703`, of the code of November 30, 2026, and of 150 later that day: `--mutants 30` with
-the seeds 1796011446 to 1796011450, values, tree and controller only, the last 125 with
-`--most-cases 250`, of `--mutants 120 --seed 1796015536`, and of `--mutants 60 --seed 1796023123
---most-cases 250`, values, tree and controller. What cases notice by now is left out.
+``survivors.tsv`` is what `krl bench conform --group none --survivors` left over of mutants that had
+not been seen, of the code of November 30, 2026. On the last of that day: `--mutants 100 --seed
+1796025189 --seed 1796025190`, and most of `--mutants 150` with the seeds 1796018876 to 1796018878.
+On earlier code: `--mutants 400 --seed 1796000382`, `--mutants 300 --seed 1796001702 --seed
+1796001703`, `--mutants 120 --seed 1796015536`; and of values, tree and controller only `--mutants
+30` with the seeds 1796011446 to 1796011450 and `--mutants 60 --seed 1796023123`, these mostly with
+`--most-cases 250`. What cases are known to notice by now is left out.
 
 A case notices a fault if it passes without it and does not pass with it.
 """
