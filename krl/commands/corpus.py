@@ -126,7 +126,7 @@ def synth(
         raise InputError(f"{folder}: not a folder")
     ours = CORPUS / "programs"
     roots = paths or ([ours] if ours.is_dir() else [])
-    with progress_bar("writing", wanted) as advance, as_input_errors(IngestError):
+    with progress_bar("writing", wanted) as advance, as_input_errors(IngestError, ValueError):
         written = write_corpus(roots, folder, wanted, seed, advance)
     files, cells = counted(written.files, "file"), counted(written.cells, "cell")
     typer.echo(one_line(f"{written.bytes:,} bytes in {files} of {cells} in {folder}"))

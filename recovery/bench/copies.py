@@ -117,12 +117,13 @@ def write_corpus(
 ) -> Written:
     """Write ``size`` bytes below a folder: copies of programs, and a tenth random programs.
 
-    Without programs all are random. The same programs, size and seed give the same files.
+    Without ``roots`` all are random. The same programs, size and seed give the same files.
     ``on_bytes`` is called with the size of each file. Raises `IngestError` for a program that
-    cannot be read, and `OSError`.
+    cannot be read, `ValueError` as `write_copies`, and `OSError`.
     """
-    programs = source_files(roots) if roots else ()
-    chosen = templates(programs, FailureFinder(Recognizer(krl_grammar())))
+    if not roots:
+        return write_cells(folder, size, seed, on_bytes)
+    chosen = templates(source_files(roots), FailureFinder(Recognizer(krl_grammar())))
     copies = write_copies(chosen, folder, size - size // 10, seed, on_bytes)
     if copies.bytes >= size:
         return copies
@@ -142,7 +143,7 @@ def write_copies(
     """Write copies below ``folder`` until they have ``size`` bytes or a little more.
 
     Each origin is copied as a whole, as a cell, so that files which belong together stay together.
-    The same templates, size and seed give the same files. Without templates nothing is written.
+    The same templates, size and seed give the same files. Raises ValueError without templates.
     """
     number = files = written = 0
     cells = set()
@@ -164,4 +165,6 @@ def write_copies(
         on_bytes(len(data))
         if written >= size:
             break
+    if not files:
+        raise ValueError("there is no name in them")
     return Written(len(cells), files, written)

@@ -85,7 +85,7 @@ def _write(roots: Sequence[Path], corpus: Path, size: int, seed: int) -> None:
     from recovery.bench.copies import write_corpus
     from support.files.discovery import IngestError
 
-    with as_input_errors(IngestError):
+    with as_input_errors(IngestError, ValueError):
         write_corpus(roots, corpus, size, seed)
 
 

@@ -101,11 +101,12 @@ def test_corpus_has_the_size_and_no_content_twice(tmp_path: Path) -> None:
     assert a == b != c
 
 
-def test_programs_without_a_name_make_no_copies(tmp_path: Path) -> None:
-    """Text without a name gives no template, and without templates nothing is written."""
+def test_programs_without_a_name_make_no_corpus(tmp_path: Path) -> None:
+    """Text without a name gives no template, and without templates nothing can be written."""
     (tmp_path / "a.src").write_text("; 12\nEND\n", encoding="utf-8")
     assert [] == list(templates(source_files([tmp_path]), FINDER))
-    assert 0 == write_copies([], tmp_path / "out", 1_000, 1).bytes
+    with pytest.raises(ValueError, match="no name"):
+        write_corpus([tmp_path], tmp_path / "out", 1_000, 1)
 
 
 @pytest.mark.parametrize("has_programs", [True, False])
