@@ -264,9 +264,11 @@ def _doubtful_lines(case: Case) -> Iterator[str]:
     """Yield that a hard expectation stands on a line, or behind it, that is not surely allowed."""
     for source in case.sources:
         for number, line in enumerate(source.text.splitlines(), start=1):
-            said = case.said_of(source.path, number, behind=True)
+            code = line.partition(";")[0]
             for one, written in _DOUBTFUL.items():
-                if written.search(re.sub(";.*", "", line)) and any(map(case.is_sure, said)):
+                if not written.search(code):
+                    continue
+                if any(map(case.is_sure, case.said_of(source.path, number, behind=True))):
                     yield f"{source.path}:{number}: only {one} allows it, and it is not said so"
 
 

@@ -132,7 +132,7 @@ def from_synchronous(axes: Array) -> float | None:
 
 
 def around(moment: float, unsure: float) -> Array:
-    """Return the moments that a time may mean which is unsure by so much."""
+    """Return the moments that a time may mean which is unsure by so much: 240 steps, if it is."""
     return np.linspace(moment - unsure, moment + unsure, 241 if unsure else 1)
 
 

@@ -131,7 +131,8 @@ class Calls(Expressions):
             type_ = parameter.type if parameter is not None else UNKNOWN
             if argument is not None and is_out and is_variable(self.frame.unit, argument):
                 place = yield from self.place(argument)
-                value = yield from self.read(place)
+                if isinstance(place, SystemPlace):
+                    value = yield from self.read(place)
                 if is_left_out(place):
                     raise fault("uninitialised")
             elif argument is not None and name in BUILTINS and reads_text(type_):
@@ -140,7 +141,7 @@ class Calls(Expressions):
                 value = yield from self.value(argument, type_)
             places.append(place)
             values.append(value)
-        # A later argument may have called a function that changes a variable passed by reference.
+        # Only now, as another argument may call a function that changes such a variable.
         for number, place in enumerate(places):
             if isinstance(place, LocalPlace):
                 values[number] = place.get()

@@ -188,7 +188,7 @@ class EditTrial:
         known = self._known[tuple(edits)]
         new = [n for n in chosen if n not in known]
         if new:
-            known |= dict.fromkeys(new, 0)  # none can be read further by a misfit
+            known |= dict.fromkeys(new, 0)  # edits that do not fit read no line further
             known |= self._failures(edits, new)
             self._answers += len(new)
         return TrialResult(
