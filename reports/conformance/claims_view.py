@@ -7,7 +7,7 @@ The paper is Mühe, Angerer, Hoffmann and Reif, "On reverse-engineering the KUKA
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Final
 
 from reports.rendering.number_format import Figure, counted, percent, share
@@ -30,6 +30,8 @@ _HEIGHT: Final = 220
 #: The margins of the plot.
 _LEFT, _RIGHT, _TOP, _BOTTOM = 44, 12, 10, 26
 
+Json = dict[str, Any]
+
 
 @dataclass(frozen=True, slots=True)
 class Bar:
@@ -38,20 +40,6 @@ class Bar:
     label: str
     values: tuple[str, ...]
     share: float
-
-
-@dataclass(frozen=True, slots=True)
-class Curve:
-    """A curve as points of an SVG polyline, with a caption and grid lines at 0, 50 and 100 %."""
-
-    points: str
-    grid: tuple[tuple[float, str], ...]
-    last: tuple[float, float]
-    caption: str
-    width: int = _WIDTH
-    height: int = _HEIGHT
-    left: int = _LEFT
-    right: int = _WIDTH - _RIGHT
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,48 +57,26 @@ class Claim:
     is_kept: bool | None = None
     headings: tuple[str, ...] = ()
     bars: tuple[Bar, ...] = ()
-    curve: Curve | None = None
+    curve: Json | None = None
     command: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class LeftOut:
-    """Something that the paper left out, and a case that demonstrates it, with its verdict."""
-
-    what: str
-    paper: str
-    case: str
-    title: str
-    verdict: str
-
-
-@dataclass(frozen=True, slots=True)
-class ClaimsView:
-    """The content of the page."""
-
-    figures: tuple[Figure, ...]
-    claims: tuple[Claim, ...]
-    left_out: tuple[LeftOut, ...]
-    left_out_command: str = field(default="")
-
-
-def claims_view(found: Mapping[str, Any]) -> ClaimsView:
+def claims_view(found: Mapping[str, Any]) -> Json:
     """Return the content of the page from records by their names; any of them may be absent."""
     by_name = {name: nested(found, name) for name in _COMMANDS}
-    claims = (
-        _growth(by_name["growth"]),
-        _clusters(by_name["recover"]),
-        _bytecode(by_name["bench-vm"]),
-        _in_c(by_name["bench-vm"]),
-        _batches(by_name["bench-arm"]),
-        _sensitivity(by_name["bench-conform"]),
-    )
-    return ClaimsView(
-        figures=tuple(_figures(by_name)),
-        claims=claims,
-        left_out=tuple(_left_out(by_name["conform"], by_name["conform-arm"])),
-        left_out_command="" if by_name["conform"] else _COMMANDS["conform"],
-    )
+    return {
+        "figures": [*_figures(by_name)],
+        "claims": [
+            _growth(by_name["growth"]),
+            _clusters(by_name["recover"]),
+            _bytecode(by_name["bench-vm"]),
+            _in_c(by_name["bench-vm"]),
+            _batches(by_name["bench-arm"]),
+            _sensitivity(by_name["bench-conform"]),
+        ],
+        "left_out": [*_left_out(by_name["conform"], by_name["conform-arm"])],
+        "left_out_command": "" if by_name["conform"] else _COMMANDS["conform"],
+    }
 
 
 def _figures(by_name: Mapping[str, Record]) -> Iterable[Figure]:
@@ -165,8 +131,11 @@ def _growth(record: Record) -> Claim:
     return Claim("growth", title, paper, found, curve=curve)
 
 
-def _curve(values: Sequence[float]) -> Curve:
-    """Return a step curve: a value holds from its construct to the next."""
+def _curve(values: Sequence[float]) -> Json:
+    """Return a step curve as points of an SVG polyline, with grid lines at 0, 50 and 100 %.
+
+    A value holds from its construct to the next.
+    """
     width, height = _WIDTH - _LEFT - _RIGHT, _HEIGHT - _TOP - _BOTTOM
     step = width / max(1, len(values) - 1)
 
@@ -184,7 +153,16 @@ def _curve(values: Sequence[float]) -> Curve:
         f"Files that parse, from {percent(values[0], 1)} to {percent(values[-1], 1)}, "
         f"over {len(values) - 1:,} constructs"
     )
-    return Curve(" ".join(f"{x},{one}" for x, one in points), grid, points[-1], caption)
+    return {
+        "points": " ".join(f"{x},{one}" for x, one in points),
+        "grid": grid,
+        "last": points[-1],
+        "caption": caption,
+        "width": _WIDTH,
+        "height": _HEIGHT,
+        "left": _LEFT,
+        "right": _WIDTH - _RIGHT,
+    }
 
 
 def _clusters(record: Record) -> Claim:
@@ -357,7 +335,7 @@ _SHOWN: Final = (
 )
 
 
-def _left_out(record: Record, arm: Record) -> Iterable[LeftOut]:
+def _left_out(record: Record, arm: Record) -> Iterable[Json]:
     """Yield the verdict of each case; ``arm`` is the record of a run on the simulated arm."""
     cases, moved = (
         {text(one, "name"): one for one in records(found, "cases")} for found in (record, arm)
@@ -365,7 +343,8 @@ def _left_out(record: Record, arm: Record) -> Iterable[LeftOut]:
     for what, paper, name, executor, robot in _SHOWN:
         case = (moved if robot else cases).get(name, {}) or cases.get(name, {})
         verdict = _verdict(case, executor, robot) if record or arm else ""
-        yield LeftOut(what, paper, name, shown(text(case, "title"), 200), verdict)
+        title = shown(text(case, "title"), 200)
+        yield {"what": what, "paper": paper, "case": name, "title": title, "verdict": verdict}
 
 
 def _verdict(case: Record, executor: str, robot: str) -> str:

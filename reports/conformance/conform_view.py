@@ -1,75 +1,27 @@
 """The content of the page of a conformance run: headline figures, and the matrix of the suites."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from reports.rendering.number_format import Figure, counted, moment, percent, share
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
-from reports.rendering.sanitizing import shown
+from reports.rendering.sanitizing import shown, shown_texts
 
 _RUN = "each case on every executor and robot, against its rule and against one another"
 _RECORDED = "what a controller did in each case, against its rule"
 _MOST_LEFT = 2_000
 VERDICTS = ("pass", "fail", "unconfirmed", "known-failure", "skipped")
+_WORST_FIRST = ("fail", "known-failure", "unconfirmed", "pass", "skipped")
+
+Json = dict[str, Any]
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """A suite on one executor and robot: the number of cases by verdict."""
-
-    executor: str
-    robot: str
-    counts: tuple[tuple[str, int], ...]
-
-    @property
-    def total(self) -> int:
-        """Return the number of its cases."""
-        return sum(number for _, number in self.counts)
-
-    @property
-    def worst(self) -> str:
-        """Return the most severe verdict that occurs."""
-        there = {name for name, number in self.counts if number}
-        order = ("fail", "known-failure", "unconfirmed", "pass", "skipped")
-        return next((name for name in order if name in there), "none")
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A suite with a cell for each column, ``None`` if it did not run there."""
-
-    suite: str
-    cases: int
-    negative: int
-    cells: tuple[Cell | None, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class ConformView:
-    """The data of the template, safe to print.
+def conform_view(record: Mapping[str, Any]) -> Json:
+    """Return what the template shows of a record; see `conform_page.write_conformance_page`.
 
     ``subtitle`` says what was compared with what. ``fault`` is a planted fault. ``left`` are cases
     without a result, with the reason why.
     """
-
-    headline: str
-    subtitle: str
-    selection: str
-    version: str
-    fault: str
-    left: tuple[str, tuple[str, ...]]
-    is_green: bool
-    made: str
-    figures: tuple[Figure, ...]
-    columns: tuple[tuple[str, str], ...]
-    rows: tuple[Row, ...]
-    uncovered: tuple[str, ...]
-    has_history: bool
-
-
-def conform_view(record: Mapping[str, Any]) -> ConformView:
-    """Return the view of a record; see `conform_page.write_conformance_page`."""
     suites = records(record, "suites")
     columns = _columns(suites)
     failed = count(nested(record, "case_verdicts"), "fail")
@@ -81,24 +33,23 @@ def conform_view(record: Mapping[str, Any]) -> ConformView:
     if recording:
         headline = f"Recording of {recording}: {headline[0].lower()}{headline[1:]}"
     left = cut_off or texts(record, "not_recorded")
-    return ConformView(
-        headline=shown(headline, 200) if total else "No case was run",
-        subtitle=_RECORDED if recording else _RUN,
-        selection=shown(" ".join(texts(record, "selection")), 200),
-        version=shown(text(record, "version"), 40),
-        left=(
+    return {
+        "headline": shown(headline, 200) if total else "No case was run",
+        "subtitle": _RECORDED if recording else _RUN,
+        "selection": shown(" ".join(texts(record, "selection")), 200),
+        **shown_texts(record, version=40, fault=200),
+        "left": (
             f"{counted(len(left), 'case')} {'not run' if cut_off else 'not recorded'}",
-            tuple(shown(name, 80) for name in left[:_MOST_LEFT]),
+            [shown(name, 80) for name in left[:_MOST_LEFT]],
         ),
-        fault=shown(text(record, "fault"), 200),
-        is_green=bool(total) and not failed and not cut_off,
-        made=shown(moment(text(record, "generated")), 60),
-        figures=tuple(_figures(record)),
-        columns=columns,
-        rows=tuple(_row(suite, columns) for suite in suites),
-        uncovered=tuple(shown(rule, 20) for rule in texts(nested(record, "coverage"), "uncovered")),
-        has_history=len(records(record, "history")) > 1,
-    )
+        "is_green": bool(total) and not failed and not cut_off,
+        "made": shown(moment(text(record, "generated")), 60),
+        "figures": _figures(record),
+        "columns": columns,
+        "rows": [_row(suite, columns) for suite in suites],
+        "uncovered": [shown(rule, 20) for rule in texts(nested(record, "coverage"), "uncovered")],
+        "has_history": len(records(record, "history")) > 1,
+    }
 
 
 def _columns(suites: list[Record]) -> tuple[tuple[str, str], ...]:
@@ -113,18 +64,28 @@ def _columns(suites: list[Record]) -> tuple[tuple[str, str], ...]:
     return tuple(sorted(found, key=lambda c: (robots.get(c[1], 9), order.get(c[0], 9), c)))
 
 
-def _row(suite: Record, columns: tuple[tuple[str, str], ...]) -> Row:
+def _row(suite: Record, columns: tuple[tuple[str, str], ...]) -> Json:
+    """Return a suite with a cell for each column, ``None`` if it did not run there."""
     cells = {}
     for cell in records(suite, "cells"):
         place = (shown(text(cell, "executor"), 40), shown(text(cell, "robot"), 40))
-        verdicts = nested(cell, "verdicts")
-        cells[place] = Cell(*place, tuple((name, count(verdicts, name)) for name in VERDICTS))
-    return Row(
-        shown(text(suite, "name"), 80),
-        count(suite, "cases"),
-        count(suite, "negative"),
-        tuple(cells.get(place) for place in columns),
-    )
+        cells[place] = _cell(nested(cell, "verdicts"))
+    return {
+        "suite": shown(text(suite, "name"), 80),
+        "cases": count(suite, "cases"),
+        "negative": count(suite, "negative"),
+        "cells": [cells.get(place) for place in columns],
+    }
+
+
+def _cell(verdicts: Record) -> Json:
+    """Return a suite on one executor and robot: the number of cases by verdict, and the worst."""
+    counts = [(name, count(verdicts, name)) for name in VERDICTS]
+    return {
+        "counts": counts,
+        "total": sum(number for _, number in counts),
+        "worst": next((name for name in _WORST_FIRST if count(verdicts, name)), "none"),
+    }
 
 
 def _figures(record: Mapping[str, Any]) -> list[Figure]:

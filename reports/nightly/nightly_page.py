@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ from reports.rendering.embedding import embedded_json
 from reports.rendering.number_format import Figure, counted, percent, share
 from reports.rendering.page import joined, render
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
-from reports.rendering.sanitizing import plain, shown
+from reports.rendering.sanitizing import plain, shown, shown_texts
 from support.files.atomic_write import write_atomic
 
 _MAX_RUNS = 400
@@ -68,44 +67,6 @@ _IN_WORDS = {
 Json = dict[str, Any]
 
 
-@dataclass(frozen=True, slots=True)
-class _Step:
-    name: str
-    status: str
-    is_fine: bool
-    seconds: float
-    page: str
-
-
-@dataclass(frozen=True, slots=True)
-class _Failure:
-    is_own: bool
-    what: str
-    page: str
-    command: str
-    files: tuple[tuple[str, str], ...]
-    cases: tuple[tuple[str, str], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class _NightlyView:
-    """The data of the template.
-
-    ``bench`` has label, value, previous value and change. ``earlier`` are the dates of runs whose
-    pages exist: none if each run has a machine of its own.
-    """
-
-    date: str
-    headline: str
-    failures: tuple[_Failure, ...]
-    figures: tuple[Figure, ...]
-    changes: tuple[tuple[str, str], ...]
-    steps: tuple[_Step, ...]
-    bench: tuple[tuple[str, str, str, str], ...]
-    runs: int
-    earlier: tuple[str, ...]
-
-
 def write_nightly_page(record: Mapping[str, Any], folder: Path) -> Path:
     """Write ``folder``/index.html, the page of one nightly run, and return its path.
 
@@ -144,16 +105,21 @@ def _short(run: Record) -> Json:
     }
 
 
-def _view(record: Mapping[str, Any], runs: Sequence[Record], out: Path) -> _NightlyView:
+def _view(record: Mapping[str, Any], runs: Sequence[Record], out: Path) -> Json:
+    """Return what the template shows.
+
+    ``bench`` has label, value, previous value and change. ``earlier`` are the dates of runs whose
+    pages exist: none if each run has a machine of its own.
+    """
     before = nested(runs[-2], "bench") if len(runs) > 1 else {}
-    return _NightlyView(
-        date=shown(text(record, "date"), 40),
-        headline=shown(headline(record)),
-        failures=tuple(map(_failure, records(record, "failures")[:_MAX_CHANGES])),
-        figures=tuple(_figures(record)),
-        changes=tuple((tone(one), shown(one)) for one in texts(record, "changes")[:_MAX_CHANGES]),
-        steps=tuple(_step(name, step) for name, step in nested(record, "steps").items()),
-        bench=tuple(
+    return {
+        **shown_texts(record, date=40),
+        "headline": shown(headline(record)),
+        "failures": [_failure(one) for one in records(record, "failures")[:_MAX_CHANGES]],
+        "figures": [*_figures(record)],
+        "changes": [(tone(one), shown(one)) for one in texts(record, "changes")[:_MAX_CHANGES]],
+        "steps": [_step(name, step) for name, step in nested(record, "steps").items()],
+        "bench": [
             (
                 _in_words(name),
                 _figure(value),
@@ -162,16 +128,16 @@ def _view(record: Mapping[str, Any], runs: Sequence[Record], out: Path) -> _Nigh
             )
             for name, value in nested(record, "bench").items()
             if isinstance(value, int | float)
-        ),
-        runs=len(runs),
-        earlier=tuple(
+        ],
+        "runs": len(runs),
+        "earlier": [
             date
             for run in reversed(runs[:-1])
             if _DATE.fullmatch(date := text(run, "date"))
             and date != text(record, "date")
             and (out / date / "index.html").is_file()
-        )[:MOST_EARLIER],
-    )
+        ][:MOST_EARLIER],
+    }
 
 
 def _figures(record: Mapping[str, Any]) -> Iterator[Figure]:
@@ -197,22 +163,21 @@ def _figures(record: Mapping[str, Any]) -> Iterator[Figure]:
         yield Figure("planted faults found", percent(number(bench, "conform.share"), 1), note)
 
 
-def _failure(record: Record) -> _Failure:
-    return _Failure(
-        text(record, "what").startswith(OF_THE_RUN),
-        shown(text(record, "what")),
-        _own(text(record, "page")),
-        shown(text(record, "command"), 200),
-        tuple(
+def _failure(record: Record) -> Json:
+    return {
+        "is_own": text(record, "what").startswith(OF_THE_RUN),
+        **shown_texts(record, what=400, command=200),
+        "page": _own(text(record, "page")),
+        "files": [
             (shown(name, 80), "\n".join(shown(line, 200) for line in content.splitlines()[:200]))
             for name, content in nested(record, "files").items()
             if isinstance(content, str)
-        ),
-        tuple(
+        ],
+        "cases": [
             (shown(name, 80), _own(str(page)))
             for name, page in [*nested(record, "cases").items()][:_MAX_CHANGES]
-        ),
-    )
+        ],
+    }
 
 
 def _own(page: str) -> str:
@@ -237,15 +202,15 @@ def _change(value: float, before: Any) -> str:
     return f"{100 * (value - before) / abs(before):+.1f} %"
 
 
-def _step(name: str, step: Any) -> _Step:
+def _step(name: str, step: Any) -> Json:
     fields: Record = step if isinstance(step, Mapping) else {}
     status, page = text(fields, "status"), text(fields, "page")
     # our own links are relative ones without a scheme
     is_ours = page.replace("/", "").replace(".", "").replace("-", "").isalnum()
-    return _Step(
-        shown(name, 60),
-        shown(status, 300),
-        has_ended(status),
-        number(fields, "seconds"),
-        page if is_ours and not page.startswith("/") else "",
-    )
+    return {
+        "name": shown(name, 60),
+        "status": shown(status, 300),
+        "is_fine": has_ended(status),
+        "seconds": number(fields, "seconds"),
+        "page": page if is_ours and not page.startswith("/") else "",
+    }

@@ -7,7 +7,7 @@ from posixpath import commonpath
 from typing import Any
 
 from reports.rendering.embedding import printable
-from reports.rendering.number_format import percent, share
+from reports.rendering.number_format import Figure, percent, share
 from reports.rendering.page import render
 from support.files.atomic_write import write_atomic
 
@@ -31,17 +31,6 @@ class CoveredFile:
         return [count for ways in self.branches.values() for count in ways.values()]
 
 
-@dataclass(frozen=True, slots=True)
-class _Line:
-    """A line of a file; ``state`` is ran, part or missed, or empty if it is no statement."""
-
-    number: int
-    text: str
-    state: str
-    count: str
-    note: str
-
-
 def write_coverage_page(files: Sequence[CoveredFile], tests: int, folder: Path) -> Path:
     """Write ``folder``/index.html and return its path. Raises OSError if that fails."""
     ways = [count for one in files for count in one.ways]
@@ -50,7 +39,11 @@ def write_coverage_page(files: Sequence[CoveredFile], tests: int, folder: Path) 
     below = commonpath(folders) if all(folders) and len({p[0] == "/" for p in folders}) == 1 else ""
     view = {
         "below": printable(below),
-        "figures": [_figure("statements", lines), _figure("branches", ways), _tests(tests)],
+        "figures": [
+            _figure("statements", lines),
+            _figure("branches", ways),
+            Figure("tests", f"{tests:,}", "have run"),
+        ],
         "files": [_file(one, below) for one in sorted(files, key=lambda one: one.path)],
     }
     page = render("coverage.html.j2", styles=["page.css", "coverage.css"], view=view)
@@ -84,18 +77,10 @@ def _lcov(one: CoveredFile) -> Iterator[str]:
     yield "end_of_record"
 
 
-def _figure(label: str, counts: Sequence[int]) -> Mapping[str, Any]:
-    ran = sum(1 for count in counts if count)
-    return {
-        "label": label,
-        "value": percent(ran, len(counts)),
-        "share": share(ran, len(counts)),
-        "note": f"{ran:,} of {len(counts):,} were executed",
-    }
-
-
-def _tests(tests: int) -> Mapping[str, Any]:
-    return {"label": "tests", "value": f"{tests:,}", "share": None, "note": "have run"}
+def _figure(label: str, counts: Sequence[int]) -> Figure:
+    ran, total = sum(1 for count in counts if count), len(counts)
+    note = f"{ran:,} of {total:,} were executed"
+    return Figure(label, percent(ran, total), note, share(ran, total))
 
 
 def _file(one: CoveredFile, below: str) -> Mapping[str, Any]:
@@ -112,13 +97,17 @@ def _file(one: CoveredFile, below: str) -> Mapping[str, Any]:
     }
 
 
-def _line(one: CoveredFile, number: int, text: str) -> _Line:
+def _line(one: CoveredFile, number: int, text: str) -> Mapping[str, Any]:
+    """Return a line; ``state`` is ran, part or missed, or empty if it is no statement."""
     count = one.lines.get(number)
-    shown = printable(text.expandtabs(4))
-    if count is None:
-        return _Line(number, shown, "", "", "")
     missing = [way for way, taken in one.branches.get(number, {}).items() if not taken]
-    if not count:
-        return _Line(number, shown, "missed", "0", "never executed")
-    note = f"never: {', '.join(missing)}" if missing else ""
-    return _Line(number, shown, "part" if missing else "ran", f"{count:,}", note)
+    state, note = "ran", ""
+    if count is None:
+        state = ""
+    elif not count:
+        state, note = "missed", "never executed"
+    elif missing:
+        state, note = "part", f"never: {', '.join(missing)}"
+    said = "" if count is None else f"{count:,}"
+    shown = printable(text.expandtabs(4))
+    return {"number": number, "text": shown, "state": state, "count": said, "note": note}

@@ -1,13 +1,12 @@
 """The texts of a comparison, for `krl diff` and its page."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from reports.rendering.number_format import counted
+from reports.rendering.number_format import Figure, counted
 from reports.rendering.record_fields import Record, count, nested, records, text, texts
-from reports.rendering.sanitizing import shown
+from reports.rendering.sanitizing import shown, shown_texts
 
 _MOST = 2_000
 #: Angles below this are rounding errors.
@@ -16,64 +15,11 @@ _SMALLEST_ANGLE = 0.005
 _SUMMED = frozenset("X Y Z A B C A1 A2 A3 A4 A5 A6".split())
 
 
-@dataclass(frozen=True, slots=True)
-class RoutineRow:
-    """A routine with its change and its statements: "-" marks removed ones, "+" new ones.
-
-    Each hunk has its location and its marked lines.
-    """
-
-    place: str
-    name: str
-    said: str
-    hunks: Sequence[tuple[str, Sequence[tuple[str, str]]]]
-    statements: int
-
-
-@dataclass(frozen=True, slots=True)
-class PointRow:
-    """A point with its change; distance in mm, angles in degrees, empty if there is none."""
-
-    place: str
-    name: str
-    said: str
-    distance: str
-    angle: str
-    axis: str
-    frames: str
-
-
-@dataclass(frozen=True, slots=True)
-class DatumRow:
-    """Another item of a data list, with its old and new value."""
-
-    place: str
-    name: str
-    kind: str
-    old: str
-    new: str
-
-
-@dataclass(frozen=True, slots=True)
-class DiffView:
-    """The content of the page.
+def diff_view(record: Record) -> Mapping[str, Any]:
+    """Return what the template shows of a record of ``krl diff``; every field may be absent.
 
     Lists are limited; ``left_out`` has the number of omitted rows of each.
     """
-
-    old: str
-    new: str
-    figures: Sequence[Mapping[str, Any]]
-    names: Sequence[tuple[str, str]]
-    files: Sequence[str]
-    routines: Sequence[RoutineRow]
-    points: Sequence[PointRow]
-    data: Sequence[DatumRow]
-    left_out: Mapping[str, int]
-
-
-def diff_view(record: Record) -> DiffView:
-    """Return the view of a record of ``krl diff``; every field may be absent."""
     files = nested(record, "files")
     routines, points, data = (records(record, key) for key in ("routines", "points", "data"))
     far = sorted(points, key=lambda one: -_far(one))
@@ -89,27 +35,23 @@ def diff_view(record: Record) -> DiffView:
             f"{count(files, 'same'):,} the same; {count(files, 'noise'):,} but for comments",
         ),
     ]
-    return DiffView(
-        shown(text(record, "old")),
-        shown(text(record, "new")),
-        figures,
-        [(shown(text(one, "old")), shown(text(one, "new"))) for one in records(record, "names")],
-        [*_files(files)][:_MOST],
-        [_routine(one) for one in routines[:_MOST]],
-        [_point(one) for one in far[:_MOST]],
-        [_datum(one) for one in data[:_MOST]],
-        {
-            "routines": max(0, len(routines) - _MOST),
-            "points": max(0, len(points) - _MOST),
-            "data": max(0, len(data) - _MOST),
-        },
-    )
+    rows = {"routines": routines, "points": points, "data": data}
+    names = records(record, "names")
+    return {
+        **shown_texts(record, old=400, new=400),
+        "figures": figures,
+        "names": [(shown(text(one, "old")), shown(text(one, "new"))) for one in names],
+        "files": [*_files(files)][:_MOST],
+        "routines": [_routine(one) for one in routines[:_MOST]],
+        "points": [_point(one) for one in far[:_MOST]],
+        "data": [_datum(one) for one in data[:_MOST]],
+        "left_out": {key: max(0, len(listed) - _MOST) for key, listed in rows.items()},
+    }
 
 
-def _figure(label: str, value: int, section: str, note: str = "") -> Mapping[str, Any]:
+def _figure(label: str, value: int, section: str, note: str = "") -> Figure:
     """Return a headline figure that links to its section."""
-    link = {"href": f"#{section}"} if section and value else {}
-    return {"label": label, "value": f"{value:,}", "share": None, "note": note, **link}
+    return Figure(label, f"{value:,}", note, href=f"#{section}" if section and value else "")
 
 
 def _files(files: Record) -> Iterator[str]:
@@ -154,15 +96,21 @@ def routine_words(one: Record) -> str:
     return "changed"
 
 
-def _routine(one: Record) -> RoutineRow:
+def _routine(one: Record) -> Mapping[str, Any]:
+    """Return a routine with its hunks: the place of each, and lines marked "-" or "+"."""
     hunks = []
     for hunk in records(one, "hunks"):
         sides = [(mark, texts(hunk, key)) for key, mark in (("old", "-"), ("new", "+"))]
         lines = [(mark, shown(line)) for mark, side in sides for line in side]
         was, now = count(hunk, "old_line"), count(hunk, "new_line")
         hunks.append((f"line {was}" if was == now else f"line {was}, now {now}", lines))
-    size = sum(len(lines) for _, lines in hunks)
-    return RoutineRow(_place(one), shown(routine_name(one)), shown(routine_words(one)), hunks, size)
+    return {
+        "place": _place(one),
+        "name": shown(routine_name(one)),
+        "said": shown(routine_words(one)),
+        "hunks": hunks,
+        "statements": sum(len(lines) for _, lines in hunks),
+    }
 
 
 # ------------------------------------------------------------------------------- points and data
@@ -230,13 +178,18 @@ def _far(one: Record) -> float:
     return float(value) if isinstance(value, int | float) else -1.0
 
 
-def _point(one: Record) -> PointRow:
+def _point(one: Record) -> Mapping[str, Any]:
+    """Return a point with its change; distance in mm, angles in degrees, empty if there is none."""
     is_measured = text(one, "kind") == "changed" and any(_measures(one))
     said = ", ".join(_others(one)) if is_measured else point_words(one)
-    name = text(one, "name")
-    return PointRow(_place(one), shown(name), shown(said), *_measures(one), shown(_frames(one)))
+    return {
+        "place": _place(one),
+        **shown_texts(one, name=400),
+        "said": shown(said),
+        **dict(zip(("distance", "angle", "axis"), _measures(one), strict=True)),
+        "frames": shown(_frames(one)),
+    }
 
 
-def _datum(one: Record) -> DatumRow:
-    old, new = shown(text(one, "old")), shown(text(one, "new"))
-    return DatumRow(_place(one), shown(text(one, "name")), text(one, "kind"), old, new)
+def _datum(one: Record) -> Mapping[str, Any]:
+    return {"place": _place(one), **shown_texts(one, name=400, kind=20, old=400, new=400)}

@@ -64,7 +64,7 @@ def write_run_page(record: Mapping[str, Any], target: Path) -> Path:
             "points": [_point(one) for one in records(record, "points")[:_MAX_POINTS]],
         }
     )
-    libraries = _LIBRARIES if view.has_path else _LIBRARIES[:1]
+    libraries = _LIBRARIES if view["has_path"] else _LIBRARIES[:1]
     page = render(
         "run.html.j2",
         script=joined((*libraries, *_SCRIPTS)),

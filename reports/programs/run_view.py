@@ -1,7 +1,6 @@
 """The texts of the page of a run: its header and headline figures."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from reports.rendering.embedding import printable
@@ -19,42 +18,26 @@ _ENDS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class RunView:
-    """The data of the template; all texts are safe to print."""
-
-    name: str
-    program: str
-    how: str
-    made: str
-    ending: str
-    is_fine: bool
-    figures: tuple[Figure, ...]
-    has_path: bool
-    has_motion: bool
-    has_measured: bool
-
-
-def run_view(record: Mapping[str, Any]) -> RunView:
-    """Return the view of a run's record; see `reports.programs.run_page.write_run_page`."""
+def run_view(record: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the template shows of a run; all texts are safe to print."""
     outcome, path = nested(record, "outcome"), nested(record, "path")
     kind = text(outcome, "kind")
     how = [text(record, name) for name in ("executor", "robot", "profile", "machine")]
     program = shown(text(record, "main"), 300)
-    return RunView(
-        name=program.replace("\\", "/").rpartition("/")[2],
-        program=program,
-        how=" · ".join(shown(one, 100) for one in how if one),
-        made=printable(moment(text(record, "generated"))),
-        ending=_ending(kind, outcome),
-        is_fine=kind == "end",
-        figures=tuple(_figures(record, outcome)),
-        has_path=bool(path.get("t")),
-        has_motion=any(
+    return {
+        "name": program.replace("\\", "/").rpartition("/")[2],
+        "program": program,
+        "how": " · ".join(shown(one, 100) for one in how if one),
+        "made": printable(moment(text(record, "generated"))),
+        "ending": _ending(kind, outcome),
+        "is_fine": kind == "end",
+        "figures": _figures(record, outcome),
+        "has_path": bool(path.get("t")),
+        "has_motion": any(
             text(event, "kind") == "motion_start" for event in records(record, "events")
         ),
-        has_measured=bool(path.get("tool_measured")),
-    )
+        "has_measured": bool(path.get("tool_measured")),
+    }
 
 
 def _ending(kind: str, outcome: Record) -> str:

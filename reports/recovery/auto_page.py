@@ -1,14 +1,13 @@
 """The page of an automatic recovery: growth, and accepted and refused edits with the reasons."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from reports.rendering.number_format import Figure, counted, percent, share
 from reports.rendering.page import render
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
-from reports.rendering.sanitizing import shown
+from reports.rendering.sanitizing import shown, shown_texts
 from support.files.atomic_write import write_atomic
 
 _MAX_ROUNDS = 200
@@ -16,40 +15,7 @@ _MAX_ROWS = 400
 _LONGEST = 600
 _WIDTH, _HEIGHT, _LEFT, _BOTTOM = 640, 220, 68, 24
 
-
-@dataclass(frozen=True, slots=True)
-class _Row:
-    """An accepted or refused step; ``note`` is the evidence or the reason."""
-
-    round: int
-    id: str
-    title: str
-    edits: tuple[str, ...]
-    note: str
-
-
-@dataclass(frozen=True, slots=True)
-class _Curve:
-    """A line of the chart: its CSS class, and its points in SVG notation."""
-
-    name: str
-    points: str
-
-
-@dataclass(frozen=True, slots=True)
-class _View:
-    headline: str
-    start: str
-    figures: tuple[Figure, ...]
-    curves: tuple[_Curve, ...]
-    grid: tuple[tuple[float, str], ...]
-    held_out: tuple[str, ...]
-    taken: tuple[_Row, ...]
-    refused: tuple[_Row, ...]
-    is_finished: bool
-    width: int = _WIDTH
-    height: int = _HEIGHT
-    left: int = _LEFT
+Json = dict[str, Any]
 
 
 def write_auto_page(record: Mapping[str, Any], folder: Path) -> Path:
@@ -62,7 +28,7 @@ def write_auto_page(record: Mapping[str, Any], folder: Path) -> Path:
     return write_atomic(folder / "index.html", page)
 
 
-def _view(record: Record) -> _View:
+def _view(record: Record) -> Json:
     rounds = records(record, "rounds")[:_MAX_ROUNDS]
     last = rounds[-1] if rounds else {}
     figures = [_figure(name, nested(last, key)) for name, key in _HALVES if nested(last, key)]
@@ -74,22 +40,24 @@ def _view(record: Record) -> _View:
     figures.append(Figure("rules", f"{rules:,}", f"grown in {minutes:.1f} minutes"))
     figures += _target(nested(record, "target"))
     curves = [
-        _Curve(key, _points([nested(done, key) for done in rounds]))
+        {"name": key, "points": _points([nested(done, key) for done in rounds])}
         for _, key in _HALVES
         if count(nested(last, key), "files")
     ]
-    grid = tuple((_y(part), f"{100 * part:.0f} %") for part in (0.0, 0.5, 1.0))
-    return _View(
-        percent(*_of(nested(last, "shown"))) if rounds else "",
-        shown(text(record, "start"), _LONGEST),
-        tuple(f for f in figures if f.value != "–"),
-        tuple(curves),
-        grid,
-        tuple(shown(origin, _LONGEST) for origin in texts(record, "held_out")[:_MAX_ROWS]),
-        tuple(taken[:_MAX_ROWS]),
-        tuple(refused[:_MAX_ROWS]),
-        record.get("finished") is True,
-    )
+    return {
+        "headline": percent(*_of(nested(last, "shown"))) if rounds else "",
+        **shown_texts(record, start=_LONGEST),
+        "figures": [f for f in figures if f.value != "–"],
+        "curves": curves,
+        "grid": [(_y(part), f"{100 * part:.0f} %") for part in (0.0, 0.5, 1.0)],
+        "held_out": [shown(origin, _LONGEST) for origin in texts(record, "held_out")[:_MAX_ROWS]],
+        "taken": taken[:_MAX_ROWS],
+        "refused": refused[:_MAX_ROWS],
+        "is_finished": record.get("finished") is True,
+        "width": _WIDTH,
+        "height": _HEIGHT,
+        "left": _LEFT,
+    }
 
 
 _HALVES = (("of the files shown parse", "shown"), ("of the files held out parse", "held"))
@@ -137,13 +105,11 @@ def _y(part: float) -> float:
     return 12 + (1 - part) * (_HEIGHT - _BOTTOM - 12)
 
 
-def _taken(number: int, done: Record) -> list[_Row]:
+def _taken(number: int, done: Record) -> list[Json]:
     return [
-        _Row(
+        _row(
             number,
-            shown(text(step, "id"), _LONGEST),
-            shown(text(step, "title"), _LONGEST),
-            tuple(shown(edit, _LONGEST) for edit in texts(step, "edits")),
+            step,
             f"{counted(count(step, 'files'), 'file')}, {counted(count(step, 'origins'), 'origin')}"
             if count(step, "lines")
             else "no line needs it",
@@ -152,15 +118,18 @@ def _taken(number: int, done: Record) -> list[_Row]:
     ]
 
 
-def _refused(done: Record, number: int) -> list[_Row]:
+def _refused(done: Record, number: int) -> list[Json]:
     """Return the refused steps of the last round; those of earlier rounds may be accepted since."""
     return [
-        _Row(
-            number,
-            "",
-            shown(text(step, "title"), _LONGEST),
-            tuple(shown(edit, _LONGEST) for edit in texts(step, "edits")),
-            shown(text(step, "reason"), _LONGEST),
-        )
-        for step in records(done, "refused")
+        _row(number, {**step, "id": ""}, text(step, "reason")) for step in records(done, "refused")
     ]
+
+
+def _row(number: int, step: Record, note: str) -> Json:
+    """Return an accepted or refused step; ``note`` is the evidence or the reason."""
+    return {
+        "round": number,
+        **shown_texts(step, id=_LONGEST, title=_LONGEST),
+        "edits": [shown(edit, _LONGEST) for edit in texts(step, "edits")],
+        "note": shown(note, _LONGEST),
+    }

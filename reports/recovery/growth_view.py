@@ -4,14 +4,14 @@ All texts can be printed as they are: untrusted ones have passed through `printa
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Any
 
 from reports.recovery.construct_data import anchor
-from reports.recovery.skipped_files import Skipped, skipped_files
+from reports.recovery.skipped_files import skipped_files
 from reports.rendering.embedding import printable
 from reports.rendering.number_format import Figure, clip, counted, moment, percent, share, size
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
-from reports.rendering.sanitizing import shown
+from reports.rendering.sanitizing import shown, shown_texts
 
 _BIGGEST = 40
 _MAX_FILES = 400
@@ -19,87 +19,13 @@ _MAX_LINES = 40
 _MAX_OTHERS = 60
 
 
-@dataclass(frozen=True, slots=True)
-class StepRow:
-    """One step of the growth.
-
-    ``anchor`` is its name in links, ``bar`` its restored files relative to the largest such number.
-    """
-
-    anchor: str
-    number: int
-    title: str
-    grounds: tuple[str, ...]
-    files: int
-    origins: int
-    restored: int
-    broken: int
-    bar: float
-    parsed: str
-    parsed_bytes: str
-    failing: int
-    mended: int
-
-
 _NO_KRL = frozenset({"invalid", "template", "damaged"})
 
-
-@dataclass(frozen=True, slots=True)
-class LeftLine:
-    """A failing line of a file that remains: before, in and after the offending token."""
-
-    line: int
-    before: str
-    token: str
-    after: str
+Json = dict[str, Any]
 
 
-@dataclass(frozen=True, slots=True)
-class LeftFile:
-    """A file that does not parse after the last step.
-
-    ``kind`` is invalid, template, damaged, waiting or empty; ``why`` is the reason and ``why_line``
-    its line.
-    """
-
-    path: str
-    failing: int
-    kind: str
-    why: str
-    why_line: int
-    lines: tuple[LeftLine, ...]
-    more: int
-
-
-@dataclass(frozen=True, slots=True)
-class GrowthView:
-    """The static parts of the page. ``state`` is no-files, no-steps or steps."""
-
-    state: str
-    grammar: str
-    grammar_hash: str
-    made: str
-    headline: str
-    figures: tuple[Figure, ...]
-    rows: tuple[StepRow, ...]
-    biggest: tuple[StepRow, ...]
-    remaining: int
-    left: tuple[LeftFile, ...]
-    left_out: int
-    explained: int
-    decisions: int
-    one: str
-    two: str
-    undecided: tuple[str, ...]
-    undecided_total: int
-    ambiguous: int
-    ambiguous_of: int
-    ambiguous_examples: tuple[tuple[str, str], ...]
-    skipped: tuple[Skipped, ...]
-
-
-def growth_view(record: Record) -> GrowthView:
-    """Return the static parts of the page of ``record``."""
+def growth_view(record: Record) -> Json:
+    """Return what the template shows; ``state`` is no-files, no-steps or steps."""
     steps = records(record, "steps")
     rows = _rows(steps)
     version = text(record, "version")
@@ -107,32 +33,32 @@ def growth_view(record: Record) -> GrowthView:
     left = records(record, "remaining_files")
     look, ambiguous = nested(record, "lookahead"), nested(record, "ambiguous")
     undecided = texts(look, "others")
-    return GrowthView(
-        state=_state(record, steps),
-        grammar=shown(text(record, "grammar")),
-        grammar_hash=shown(text(record, "grammar_sha256"), 64),
-        made=" · ".join(shown(part, 80) for part in made if part),
-        headline=_headline(record, steps),
-        figures=_figures(record, steps),
-        rows=rows,
-        biggest=tuple(sorted(rows, key=lambda row: -row.restored)[:_BIGGEST]),
-        remaining=len(left),
-        left=_left(record, left),
-        left_out=max(0, len(left) - _MAX_FILES),
-        explained=sum(text(file, "kind") in _NO_KRL for file in left),
-        decisions=count(look, "decisions"),
-        one=percent(number(look, "one"), 100),
-        two=percent(number(look, "two"), 100),
-        undecided=tuple(shown(line) for line in undecided[:_MAX_OTHERS]),
-        undecided_total=len(undecided),
-        ambiguous=count(ambiguous, "lines"),
-        ambiguous_of=count(ambiguous, "of"),
-        ambiguous_examples=tuple(
+    return {
+        "state": _state(record, steps),
+        **shown_texts(record, grammar=400),
+        "grammar_hash": shown(text(record, "grammar_sha256"), 64),
+        "made": " · ".join(shown(part, 80) for part in made if part),
+        "headline": _headline(record, steps),
+        "figures": _figures(record, steps),
+        "rows": rows,
+        "biggest": sorted(rows, key=lambda row: -row["restored"])[:_BIGGEST],
+        "remaining": len(left),
+        "left": _left(record, left),
+        "left_out": max(0, len(left) - _MAX_FILES),
+        "explained": sum(text(file, "kind") in _NO_KRL for file in left),
+        "decisions": count(look, "decisions"),
+        "one": percent(number(look, "one"), 100),
+        "two": percent(number(look, "two"), 100),
+        "undecided": [shown(line) for line in undecided[:_MAX_OTHERS]],
+        "undecided_total": len(undecided),
+        "ambiguous": count(ambiguous, "lines"),
+        "ambiguous_of": count(ambiguous, "of"),
+        "ambiguous_examples": [
             (f"{shown(text(e, 'path'), 300)}:{count(e, 'line')}", shown(text(e, "text"), 300))
             for e in records(ambiguous, "examples")
-        ),
-        skipped=tuple(skipped_files(record, _MAX_FILES)),
-    )
+        ],
+        "skipped": [*skipped_files(record, _MAX_FILES)],
+    }
 
 
 def _state(record: Record, steps: Sequence[Record]) -> str:
@@ -183,7 +109,8 @@ def _figures(record: Record, steps: Sequence[Record]) -> tuple[Figure, ...]:
     )
 
 
-def _rows(steps: Sequence[Record]) -> tuple[StepRow, ...]:
+def _rows(steps: Sequence[Record]) -> list[Json]:
+    """Return the steps; ``bar`` is its restored files relative to the largest such number."""
     most = max((count(step, "restored") for step in steps), default=0)
     rows = []
     before: Record | None = None
@@ -191,27 +118,32 @@ def _rows(steps: Sequence[Record]) -> tuple[StepRow, ...]:
         evidence = nested(step, "evidence")
         failing = count(step, "failing_lines")
         rows.append(
-            StepRow(
-                anchor=anchor(step),
-                number=count(step, "number"),
-                title=shown(text(step, "title") or text(step, "id"), 200),
-                grounds=tuple(shown(ground, 20) for ground in texts(step, "grounds")),
-                files=count(evidence, "files"),
-                origins=count(evidence, "origins"),
-                restored=count(step, "restored"),
-                broken=count(step, "broken"),
-                bar=share(count(step, "restored"), most),
-                parsed=percent(count(step, "parsed"), count(step, "files")),
-                parsed_bytes=percent(number(step, "parsed_bytes"), number(step, "bytes")),
-                failing=failing,
-                mended=count(before, "failing_lines") - failing if before is not None else 0,
-            )
+            {
+                "anchor": anchor(step),
+                "number": count(step, "number"),
+                "title": shown(text(step, "title") or text(step, "id"), 200),
+                "grounds": [shown(ground, 20) for ground in texts(step, "grounds")],
+                "files": count(evidence, "files"),
+                "origins": count(evidence, "origins"),
+                "restored": count(step, "restored"),
+                "broken": count(step, "broken"),
+                "bar": share(count(step, "restored"), most),
+                "parsed": percent(count(step, "parsed"), count(step, "files")),
+                "parsed_bytes": percent(number(step, "parsed_bytes"), number(step, "bytes")),
+                "failing": failing,
+                "mended": count(before, "failing_lines") - failing if before is not None else 0,
+            }
         )
         before = step
-    return tuple(rows)
+    return rows
 
 
-def _left(record: Record, files: Sequence[Record]) -> tuple[LeftFile, ...]:
+def _left(record: Record, files: Sequence[Record]) -> list[Json]:
+    """Return the files that do not parse after the last step.
+
+    ``kind`` is invalid, template, damaged, waiting or empty; ``why`` is the reason and ``why_line``
+    its line.
+    """
     lines: dict[str, list[Record]] = {}
     for line in records(record, "remaining"):
         lines.setdefault(text(line, "path"), []).append(line)
@@ -219,25 +151,25 @@ def _left(record: Record, files: Sequence[Record]) -> tuple[LeftFile, ...]:
     for file in files[:_MAX_FILES]:
         own = lines.get(text(file, "path"), [])
         rows.append(
-            LeftFile(
-                path=shown(text(file, "path")),
-                failing=count(file, "failing"),
-                kind=shown(text(file, "kind"), 20),
-                why=shown(text(file, "reason"), 200),
-                why_line=count(file, "fact_line") * (text(file, "fact") == text(file, "reason")),
-                lines=tuple(map(_left_line, own[:_MAX_LINES])),
-                more=max(0, len(own) - _MAX_LINES),
-            )
+            {
+                **shown_texts(file, path=400, kind=20),
+                "failing": count(file, "failing"),
+                "why": shown(text(file, "reason"), 200),
+                "why_line": count(file, "fact_line") * (text(file, "fact") == text(file, "reason")),
+                "lines": [_left_line(line) for line in own[:_MAX_LINES]],
+                "more": max(0, len(own) - _MAX_LINES),
+            }
         )
-    return tuple(rows)
+    return rows
 
 
-def _left_line(line: Record) -> LeftLine:
+def _left_line(line: Record) -> Json:
+    """Return a failing line: before, in and after the offending token."""
     source, token, at = text(line, "text"), text(line, "token"), count(line, "column") - 1
     at = min(max(at, 0), len(source))
-    return LeftLine(
-        line=count(line, "line"),
-        before=printable(source[:at].lstrip()[-160:]),
-        token=printable(clip(token, 80)),
-        after=printable(clip(source[at + len(token) :], 160)),
-    )
+    return {
+        "line": count(line, "line"),
+        "before": printable(source[:at].lstrip()[-160:]),
+        "token": printable(clip(token, 80)),
+        "after": printable(clip(source[at + len(token) :], 160)),
+    }

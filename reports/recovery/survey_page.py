@@ -6,7 +6,6 @@ from typing import Any
 
 from reports.recovery.construct_data import construct_data
 from reports.recovery.survey_cluster import DETAILS, Detail, cluster_data, cluster_id
-from reports.recovery.survey_section import Section
 from reports.recovery.survey_view import survey_view
 from reports.rendering.embedding import embedded_json
 from reports.rendering.page import render, source
@@ -34,9 +33,9 @@ def render_survey_page(record: Mapping[str, Any]) -> str:
     """Return the page of ``record`` as text; see `write_survey_page`."""
     view = survey_view(record)
     for detail in DETAILS:
-        sections = [_section(record, view.section, detail)]
-        if view.start is not None:
-            sections.append(_section(nested(record, "start"), view.start, detail))
+        sections = [_section(record, view["section"], detail)]
+        if view["start"] is not None:
+            sections.append(_section(nested(record, "start"), view["start"], detail))
         data = embedded_json({"sections": sections})
         if len(data) <= _MAX_DATA_CHARACTERS:
             break
@@ -49,16 +48,14 @@ def render_survey_page(record: Mapping[str, Any]) -> str:
     )
 
 
-def _section(record: Record, shown: Section, detail: Detail) -> dict[str, Any]:
+def _section(record: Record, shown: Record, detail: Detail) -> dict[str, Any]:
     """Return a section as the page's script reads it."""
-    clusters = records(record, "clusters")[: len(shown.rows)]
+    clusters = records(record, "clusters")[: len(shown["rows"])]
     constructs = {text(c, "id"): construct_data(c) for c in records(record, "constructs")}
     answers = {cluster_id(c): text(c, "answered_by") for c in clusters}
     return {
-        "prefix": shown.prefix,
-        "files": shown.files,
-        "parsed": shown.parsed,
-        "mending": [[step.id, step.parsed, step.place] for step in shown.mending],
+        **{name: shown[name] for name in ("prefix", "files", "parsed")},
+        "mending": [[step["id"], step["parsed"], step["place"]] for step in shown["mending"]],
         "answers": {
             name: constructs[answer] for name, answer in answers.items() if answer in constructs
         },

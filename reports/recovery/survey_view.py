@@ -6,10 +6,10 @@ All texts can be printed as they are: untrusted ones have passed through `printa
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from typing import Any
 
-from reports.recovery.skipped_files import Skipped, skipped_files
-from reports.recovery.survey_section import Section, section
+from reports.recovery.skipped_files import skipped_files
+from reports.recovery.survey_section import section
 from reports.rendering.number_format import Figure, counted, moment, percent, share, size
 from reports.rendering.record_fields import (
     Record,
@@ -20,85 +20,39 @@ from reports.rendering.record_fields import (
     records,
     text,
 )
-from reports.rendering.sanitizing import shown
+from reports.rendering.sanitizing import shown, shown_texts
 
 _MAX_CLUSTERS = 2000
 _MAX_PATHS = 200
 
-
-@dataclass(frozen=True, slots=True)
-class OriginRow:
-    """The results of one origin; ``share`` is 0 to 1."""
-
-    name: str
-    files: int
-    parsed: int
-    failed: int
-    share: float
-    rate: str
+Json = dict[str, Any]
 
 
-@dataclass(frozen=True, slots=True)
-class Copies:
-    """Files with the content of an earlier one, as pairs of paths.
+def survey_view(record: Record) -> Json:
+    """Return what the template shows; ``state`` is no-files, complete, unclustered or clusters.
 
-    ``more`` is the number of pairs that are not listed.
+    ``start`` is the section of the restrictive start if that was surveyed too; ``pending`` says
+    what is still being computed and is empty when nothing is.
     """
-
-    total: int
-    pairs: tuple[tuple[str, str], ...]
-    more: int
-
-
-@dataclass(frozen=True, slots=True)
-class SurveyView:
-    """The static parts of the page.
-
-    ``state`` is no-files, complete, unclustered or clusters. ``start`` is the section of the
-    restrictive start if that was surveyed too; ``pending`` describes what is still being computed
-    and is empty when nothing is.
-    """
-
-    state: str
-    pending: str
-    grammar: str
-    grammar_hash: str
-    grammar_note: str
-    made: str
-    files: int
-    parsed: int
-    figures: tuple[Figure, ...]
-    section: Section
-    start: Section | None
-    origins: tuple[OriginRow, ...]
-    skipped: tuple[Skipped, ...]
-    skipped_total: int
-    copies: Copies
-
-
-def survey_view(record: Record) -> SurveyView:
-    """Return the static parts of the page of ``record``."""
     clusters = _shown(record)
     begun = nested(record, "start")
     version = text(record, "version")
     made = [version and f"krl {version}", moment(text(record, "generated"))]
-    return SurveyView(
-        state=_state(record, clusters),
-        pending=shown(text(record, "pending")),
-        grammar=shown(text(record, "grammar")),
-        grammar_hash=shown(text(record, "grammar_sha256"), 64),
-        grammar_note=shown(text(record, "grammar_note")),
-        made=" · ".join(shown(part, 80) for part in made if part),
-        files=count(record, "files"),
-        parsed=count(record, "parsed"),
-        figures=tuple(_figures(record, clusters)),
-        section=section(record, clusters),
-        start=section(begun, _shown(begun), "start-") if begun else None,
-        origins=_origins(record),
-        skipped=tuple(skipped_files(record, _MAX_PATHS)),
-        skipped_total=len(records(record, "skipped")),
-        copies=_copies(record),
-    )
+    return {
+        "state": _state(record, clusters),
+        **shown_texts(record, pending=400, grammar=400, grammar_note=400),
+        "grammar_hash": shown(text(record, "grammar_sha256"), 64),
+        "made": " · ".join(shown(part, 80) for part in made if part),
+        "files": count(record, "files"),
+        "parsed": count(record, "parsed"),
+        "figures": [*_figures(record, clusters)],
+        "section": section(record, clusters),
+        "start": section(begun, _shown(begun), "start-") if begun else None,
+        "origins": _origins(record),
+        "skipped": [*skipped_files(record, _MAX_PATHS)],
+        "skipped_total": len(records(record, "skipped")),
+        "copies": _copies(record),
+    }
 
 
 def _shown(record: Record) -> list[Record]:
@@ -150,27 +104,31 @@ def _figures(record: Record, clusters: Sequence[Record]) -> Iterator[Figure]:
     )
 
 
-def _origins(record: Record) -> tuple[OriginRow, ...]:
+def _origins(record: Record) -> list[Json]:
     rows = []
     for origin in records(record, "origins"):
         files, parsed = count(origin, "files"), count(origin, "parsed")
         failed = optional_count(origin, "failed")
         rows.append(
-            OriginRow(
-                name=shown(text(origin, "name"), 200),
-                files=files,
-                parsed=parsed,
-                failed=files - parsed if failed is None else failed,
-                share=share(parsed, files),
-                rate=percent(parsed, files),
-            )
+            {
+                **shown_texts(origin, name=200),
+                "files": files,
+                "parsed": parsed,
+                "failed": files - parsed if failed is None else failed,
+                "share": share(parsed, files),
+                "rate": percent(parsed, files),
+            }
         )
-    return tuple(rows)
+    return rows
 
 
-def _copies(record: Record) -> Copies:
+def _copies(record: Record) -> Json:
+    """Return files with the content of an earlier one, as pairs of paths.
+
+    ``more`` is the number of pairs that are not listed.
+    """
     copies = records(record, "copies")
-    pairs = tuple(
+    pairs = [
         (shown(text(copy, "path")), shown(text(copy, "same_as"))) for copy in copies[:_MAX_PATHS]
-    )
-    return Copies(total=len(copies), pairs=pairs, more=len(copies) - len(pairs))
+    ]
+    return {"total": len(copies), "pairs": pairs, "more": len(copies) - len(pairs)}

@@ -6,12 +6,16 @@ from datetime import datetime
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A headline figure: label, value, a note below, and a share from 0 to 1 for a bar."""
+    """A headline figure: label, value, a note below, and a share from 0 to 1 for a bar.
+
+    ``href`` is a link to the section about it.
+    """
 
     label: str
     value: str
     note: str = ""
     share: float | None = None
+    href: str = ""
 
 
 def percent(part: float, whole: float) -> str:
