@@ -34,7 +34,7 @@ from interp.program.load import Limits, load
 from interp.session import RunSetup, run_program
 from interp.values.faults import LinkError
 
-_LIMITS = Limits(statements=2**31 - 1, per_slice=1_000_000)
+_LIMITS = Limits(statements=2**31 - 1, functions=2**31 - 1, per_slice=1_000_000)
 #: The smallest time in s that the tree interpreter should need for the work of a kernel.
 _LEAST = 0.05
 _MOST: Final = 1_000_000  # as an amount
@@ -336,7 +336,7 @@ def _controlled(executor: str, rounds: int) -> float:
     fastest run counts, of at least ``rounds`` and in `_CONTROLLED` seconds.
     """
     programs = [_program(_COMPUTING.format(count)) for count in _COUNTS]
-    limits = Limits(statements=_LIMITS.statements)
+    limits = Limits(statements=_LIMITS.statements, functions=_LIMITS.functions)
     setup = RunSetup(executor=executor, is_traced=False, limits=limits)
     best = dict.fromkeys(product((0, 1), (False, True)), math.inf)
     begin, number = time.process_time(), 0
