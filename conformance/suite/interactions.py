@@ -48,7 +48,7 @@ _BESIDE: Final = (
     "    WAIT SEC 0.024\n  ENDLOOP\nEND\n"
 )
 #: What stops the arm on its path, and the rule by which it keeps to it.
-_STOPS: Final = {"brake": "INT-09.b", "brake_hard": "INT-09.b", "operator": "CTL-08"}
+_STOPS: Final = {"brake": "INT-09.b", "brake_hard": "INT-09.b", "operator": "CTL-08.b"}
 _STOPPED: Final = re.compile(r"(;> pa(?:th|sses) .*)\[.*\]")
 #: The rule of the last expectation of each case.
 _FIRST: Final = "MOT-20"
