@@ -49,7 +49,7 @@ def read_foreign(text: str, *, source: str = "grammar") -> Grammar:
 def _with_end(grammar: Grammar) -> str:
     """Return the text with a start rule that reads to the end of the file, if no rule does."""
     is_ended = any(isinstance(e, Reference) and e.name == "EOF" for e in _elements(grammar))
-    first = next((rule for rule in grammar.rules if not rule.is_lexer), None)
+    first = next(iter(grammar.parser_rules), None)
     if is_ended or first is None:
         return grammar.text
     name = next(n for k in count() if (n := f"file{k or ''}") not in grammar.by_name)
@@ -152,9 +152,8 @@ def _with_tokens(grammar: Grammar) -> str:
 
 
 def _elements(grammar: Grammar) -> Iterator[Element]:
-    for rule in grammar.rules:
-        if not rule.is_lexer:
-            yield from (e for alternative in rule.alternatives for e in walk(alternative))
+    for rule in grammar.parser_rules:
+        yield from walk(rule)
 
 
 def _names(text: str) -> Iterator[str]:

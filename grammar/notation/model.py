@@ -33,6 +33,7 @@ __all__ = [
     "complement",
     "normalised",
     "reached",
+    "referred",
     "walk",
 ]
 
@@ -146,10 +147,15 @@ class Grammar:
         """The rules by their names."""
         return {rule.name: rule for rule in self.rules}
 
+    @cached_property
+    def parser_rules(self) -> tuple[Rule, ...]:
+        """The rules that are no lexer rules, in order."""
+        return tuple(rule for rule in self.rules if not rule.is_lexer)
+
     @property
     def start(self) -> str:
         """Name of the start rule, which is the first parser rule."""
-        return next(rule.name for rule in self.rules if not rule.is_lexer)
+        return self.parser_rules[0].name
 
     @property
     def case_insensitive(self) -> bool:
@@ -202,9 +208,12 @@ class Grammar:
         return changed
 
 
-def walk(node: Element | Alternative) -> Iterator[Element]:
-    """Yield ``node`` and every element inside it, the outermost first."""
+def walk(node: Element | Alternative | Rule) -> Iterator[Element]:
+    """Yield every element inside a node, the outermost first; the node too if it is one."""
     match node:
+        case Rule(alternatives=alternatives):
+            for alternative in alternatives:
+                yield from walk(alternative)
         case Alternative(elements=elements):
             for element in elements:
                 yield from walk(element)
@@ -217,6 +226,11 @@ def walk(node: Element | Alternative) -> Iterator[Element]:
             yield from walk(item)
         case _:
             yield node
+
+
+def referred(node: Alternative | Rule) -> set[str]:
+    """Return the names of the rules and tokens to which a rule or an alternative refers."""
+    return {element.name for element in walk(node) if isinstance(element, Reference)}
 
 
 def reached(calls: Mapping[str, Collection[str]], name: str) -> set[str]:

@@ -16,6 +16,7 @@ from grammar.notation.model import (
     Reference,
     Repeat,
     Rule,
+    referred,
     walk,
 )
 
@@ -42,7 +43,7 @@ def problem(grammar: Grammar) -> str | None:
     if all(rule.is_lexer for rule in grammar.rules):
         return "1: no parser rule"
     for index, rule in enumerate(grammar.rules):
-        for element in (e for a in rule.alternatives for e in walk(a)):
+        for element in walk(rule):
             wrong = _problem(grammar, rule, element)
             if wrong:
                 return f"{_line(grammar, index, element.span[0])}: rule {rule.name}: {wrong}"
@@ -80,7 +81,7 @@ def _misuses(grammar: Grammar) -> Iterator[str]:
     lengths = _lengths(grammar.rules)
     has_end = False
     for index, rule in enumerate(grammar.rules):
-        elements = [e for a in rule.alternatives for e in walk(a)]
+        elements = list(walk(rule))
         for element in elements:
             match element:
                 case Reference(name="EOF"):
@@ -104,7 +105,7 @@ def _misuses(grammar: Grammar) -> Iterator[str]:
 def _too_deep(grammar: Grammar) -> str | None:
     """Return the name of a lexer rule that is nested too deeply, or ``None``."""
     tokens = [rule for rule in grammar.rules if rule.is_lexer]
-    refers = {rule.name: {n for a in rule.alternatives for n in _referred(a)} for rule in tokens}
+    refers = {rule.name: referred(rule) for rule in tokens}
     depths: dict[str, int] = {}
     for name in TopologicalSorter(refers).static_order():
         brackets = max(map(_brackets, grammar.by_name[name].alternatives))
@@ -206,7 +207,7 @@ def _left_recursion(grammar: Grammar, lengths: Mapping[str, float]) -> list[str]
         rule.name: {
             name
             for a in rule.alternatives
-            for name in (_referred(a) if rule.is_lexer else leading(a.elements))
+            for name in (referred(a) if rule.is_lexer else leading(a.elements))
         }
         for rule in grammar.rules
     }
@@ -224,16 +225,12 @@ def _cycle(edges: Mapping[str, set[str]]) -> list[str] | None:
     return None
 
 
-def _referred(alternative: Alternative) -> Iterator[str]:
-    return (e.name for e in walk(alternative) if isinstance(e, Reference))
-
-
 def shortest_lengths(grammar: Grammar) -> Mapping[str, float]:
     """Return the length in tokens of the shortest sentence of each parser rule.
 
     It is infinite if the rule has no finite sentence.
     """
-    return _lengths(rule for rule in grammar.rules if not rule.is_lexer)
+    return _lengths(grammar.parser_rules)
 
 
 def _lengths(rules: Iterable[Rule]) -> Mapping[str, float]:

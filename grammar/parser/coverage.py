@@ -40,7 +40,7 @@ class GrammarCoverage:
     """
 
     def __init__(self, grammar: Grammar) -> None:
-        self._rules = {rule.name: rule for rule in grammar.rules if not rule.is_lexer}
+        self._rules = {rule.name: rule for rule in grammar.parser_rules}
         self._written = {
             name: ordered_automaton(grammar, rule) for name, rule in self._rules.items()
         }

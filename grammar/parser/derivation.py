@@ -85,14 +85,13 @@ class _Rules:
         self._kind_of = lexer.kind_of
         self._entry: dict[str, int] = {}
         moves: list[tuple[str, list[_Move]]] = []  # of each position, with its rule
-        for rule in grammar.rules:
-            if not rule.is_lexer:
-                base = self._entry[rule.name] = len(moves)
-                automaton = ordered_automaton(grammar, rule)
-                place = {state: base + at for at, state in enumerate(automaton.stops)}
-                for state in place:
-                    found = automaton.moves(state)
-                    moves.append((rule.name, [m and (m[0], place[m[1]]) for m in found]))
+        for rule in grammar.parser_rules:
+            base = self._entry[rule.name] = len(moves)
+            automaton = ordered_automaton(grammar, rule)
+            place = {state: base + at for at, state in enumerate(automaton.stops)}
+            for state in place:
+                found = automaton.moves(state)
+                moves.append((rule.name, [m and (m[0], place[m[1]]) for m in found]))
         same = _merged(moves)
         self._entry = {name: same[position] for name, position in self._entry.items()}
         self._moves = [list(dict.fromkeys(m and (m[0], same[m[1]]) for m in ms)) for _, ms in moves]

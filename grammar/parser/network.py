@@ -138,7 +138,7 @@ class Network:
 def network_of(grammar: Grammar, lexer: Lexer | None = None) -> Network:
     """Return the linked automata of all parser rules; ``lexer`` saves building it."""
     lexer = lexer or lexer_of(grammar)
-    automata = {r.name: rule_automaton(grammar, r) for r in grammar.rules if not r.is_lexer}
+    automata = {r.name: rule_automaton(grammar, r) for r in grammar.parser_rules}
     entry: dict[str, int] = {}
     size = 0
     for name, automaton in automata.items():

@@ -70,7 +70,7 @@ def exact_automata(grammar: Grammar, rule: Rule) -> Callable[[tuple[int, ...]], 
 
 def _names(grammar: Grammar, rule: Rule) -> dict[str, str]:
     """Return the token names of the literals in a rule."""
-    quoted = {e.text for a in rule.alternatives for e in walk(a) if isinstance(e, Literal)}
+    quoted = {e.text for e in walk(rule) if isinstance(e, Literal)}
     return {text: grammar.literal_tokens[grammar.fold(text)] for text in quoted}
 
 

@@ -30,7 +30,7 @@ class Sentences:
 
     def __init__(self, grammar: Grammar) -> None:
         self.grammar = grammar
-        self._rules = {r.name: r for r in grammar.rules if not r.is_lexer}
+        self._rules = {r.name: r for r in grammar.parser_rules}
 
     @cached_property
     def _costs(self) -> Mapping[str, float]:

@@ -44,8 +44,7 @@ class Shortener:
             rule.name: fixed.intersection(
                 *(frozenset(_needed(grammar, a.elements)) for a in rule.alternatives)
             )
-            for rule in grammar.rules
-            if not rule.is_lexer
+            for rule in grammar.parser_rules
         }
 
     def expression(self, tree: Tree) -> Expression:

@@ -22,7 +22,7 @@ from grammar.notation.edits import (
     RemoveElement,
     Widen,
 )
-from grammar.notation.model import Grammar, Reference, walk
+from grammar.notation.model import Grammar, referred
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from recovery.bench.mutation import Mutant
@@ -154,16 +154,7 @@ def _rank(
 def _names(edits: Sequence[Edit], mutant: Mutant, whole: Grammar) -> bool:
     """Return whether an edit is in a rule that lost something, or calls a rule that is lost."""
     damaged = {getattr(e, "rule", "") for e in mutant.edits} | mutant.rules
-    callers = {
-        r.name
-        for r in whole.rules
-        if not r.is_lexer
-        and any(
-            isinstance(e, Reference) and e.name in mutant.rules
-            for a in r.alternatives
-            for e in walk(a)
-        )
-    }
+    callers = {r.name for r in whole.parser_rules if not mutant.rules.isdisjoint(referred(r))}
     place = getattr(edits[-1], "rule", "")
     return place in damaged or (mutant.kind in ("rule", "keyword") and place in callers)
 

@@ -51,9 +51,7 @@ class Mutant:
 
 def mutants(grammar: Grammar) -> Iterator[Mutant]:
     """Yield every grammar with one element removed from its parser rules that is still valid."""
-    for rule in grammar.rules:
-        if rule.is_lexer:
-            continue
+    for rule in grammar.parser_rules:
         if rule.name != grammar.start:
             yield from _made("rule", grammar, _without_rule(grammar, rule.name), {rule.name})
         if len(rule.alternatives) > 1:
@@ -85,9 +83,7 @@ def _made(
 def _users(grammar: Grammar, name: str) -> list[tuple[str, tuple[int, ...], int]]:
     """Return the uses of a rule or token as (rule, sequence, index), last first."""
     found = []
-    for rule in grammar.rules:
-        if rule.is_lexer:
-            continue
+    for rule in grammar.parser_rules:
         for address, alternative in sequences(rule):
             for place, element in enumerate(alternative.elements, 1):
                 inner = element.item if isinstance(element, Repeat) else element

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from functools import cached_property
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
-from grammar.notation.model import Element, Group, Literal, Reference, reached, walk
+from grammar.notation.model import Element, Group, Literal, Reference, reached, referred
 from grammar.parser.recognizer import Recognizer
 from recovery.tuning import WORD_LIST_PART
 
@@ -38,8 +38,8 @@ class Vocabulary:
         """For keywords that are a choice with others, the rule of that choice."""
         lexer = self.recognizer.lexer
         found: dict[str, str] = {}
-        for rule in self.grammar.rules:
-            if not rule.is_lexer and len(rule.alternatives) > 1 and self.is_set_of_words(rule.name):
+        for rule in self.grammar.parser_rules:
+            if len(rule.alternatives) > 1 and self.is_set_of_words(rule.name):
                 for word in self.words_of(rule.name):
                     if lexer.is_keyword(lexer.kind_of[word]):
                         found.setdefault(word, rule.name)
@@ -87,9 +87,8 @@ class Vocabulary:
         all_words = sum(lexer.is_keyword(kind) for kind in lexer.kind_of.values())
         return tuple(
             rule.name
-            for rule in self.grammar.rules
-            if not rule.is_lexer
-            and self.is_set_of_words(rule.name)
+            for rule in self.grammar.parser_rules
+            if self.is_set_of_words(rule.name)
             and WORD_LIST_PART * len(rule.alternatives) > all_words
         )
 
@@ -103,11 +102,9 @@ class Vocabulary:
     @cached_property
     def _written(self) -> frozenset[str]:
         called = {
-            rule.name: {
-                e.name for a in rule.alternatives for e in walk(a) if isinstance(e, Reference)
-            }
-            for rule in self.grammar.rules
-            if not rule.is_lexer and rule.name not in self.word_lists
+            rule.name: referred(rule)
+            for rule in self.grammar.parser_rules
+            if rule.name not in self.word_lists
         }
         return frozenset(reached(called, self.grammar.start)) - called.keys()
 
@@ -123,8 +120,8 @@ class Vocabulary:
     def names(self) -> str | None:
         """The rule for names: the token of names, and keywords that are names in most places."""
         lexer = self.recognizer.lexer
-        for rule in self.grammar.rules:
-            if not rule.is_lexer and self.words_of(rule.name):
+        for rule in self.grammar.parser_rules:
+            if self.words_of(rule.name):
                 single = [a.elements[0] for a in rule.alternatives]
                 words = sum(map(self.is_keyword, single))
                 token = sum(isinstance(e, Reference) and e.is_token for e in single) - words
@@ -150,8 +147,8 @@ class Vocabulary:
                 for e in a.elements
                 if len(a.elements) == 1 and isinstance(e, Reference) and e.is_token
             }
-            for rule in self.grammar.rules
-            if not rule.is_lexer and rule.name not in self.word_lists
+            for rule in self.grammar.parser_rules
+            if rule.name not in self.word_lists
         }
         own = written.pop(last.rule, set())
         more = [AddAlternative(rule, last.text) for rule in written if len(own & written[rule]) > 1]

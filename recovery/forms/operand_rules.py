@@ -8,7 +8,16 @@ from functools import cached_property
 from itertools import pairwise
 
 from grammar.notation.addresses import sequences
-from grammar.notation.model import Alternative, Element, Literal, Reference, Repeat, reached, walk
+from grammar.notation.model import (
+    Alternative,
+    Element,
+    Literal,
+    Reference,
+    Repeat,
+    reached,
+    referred,
+    walk,
+)
 from grammar.parser.lexer import ABSENT
 from grammar.parser.recognizer import Recognizer
 from recovery.brackets import BRACKETS
@@ -26,28 +35,13 @@ class OperandRules:
         self.recognizer = recognizer
         self.lexer = recognizer.lexer
         self.matcher = RuleMatcher(recognizer)
-        parser = [rule for rule in self.grammar.rules if not rule.is_lexer]
-        self._called = {
-            rule.name: {
-                e.name for a in rule.alternatives for e in walk(a) if isinstance(e, Reference)
-            }
-            for rule in parser
-        }
+        self._called = {rule.name: referred(rule) for rule in self.grammar.parser_rules}
         self.reaches = {name: frozenset(reached(self._called, name)) for name in self._called}
 
     @cached_property
     def names(self) -> str | None:
         """The rule of all names, if there is one: the only rule with the token of names."""
-        having = [
-            rule.name
-            for rule in self.grammar.rules
-            if not rule.is_lexer
-            and any(
-                isinstance(e, Reference) and e.name == self.lexer.name
-                for a in rule.alternatives
-                for e in walk(a)
-            )
-        ]
+        having = [name for name, called in self._called.items() if self.lexer.name in called]
         return having[0] if len(having) == 1 else None
 
     @cached_property
@@ -153,8 +147,7 @@ class OperandRules:
     def gathers(self, name: str, some: Collection[str]) -> bool:
         """Return whether the operand levels that a rule calls are exactly some, one each."""
         for alternative in self.grammar.by_name[name].alternatives:
-            called = {e.name for e in walk(alternative) if isinstance(e, Reference)}
-            levels = called.intersection(self.ladder)
+            levels = referred(alternative).intersection(self.ladder)
             is_alone = [type(e) for e in alternative.elements] == [Reference]
             if levels and not (is_alone and levels.issubset(some)):
                 return False
@@ -270,8 +263,8 @@ class OperandRules:
     def beside(self) -> frozenset[tuple[str, str]]:
         """Signs with the reserved words that some rule writes right behind them."""
         found: set[tuple[str, str]] = set()
-        for rule in self.grammar.rules:
-            for _, sequence in () if rule.is_lexer else sequences(rule):
+        for rule in self.grammar.parser_rules:
+            for _, sequence in sequences(rule):
                 for left, right in pairwise(sequence.elements):
                     if isinstance(left, Literal):
                         words = (e.name for e in walk(right) if isinstance(e, Reference))

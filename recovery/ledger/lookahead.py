@@ -89,13 +89,12 @@ class _Graph:
         self._steps: list[list[tuple[str | None, _Node]]] = []  # a symbol, and the node after it
         self._entry: dict[str, _Node] = {}
         self._ends: dict[_Node, str] = {}
-        for rule in grammar.rules:
-            if not rule.is_lexer:
-                base = len(self._steps)
-                steps = ordered_automaton(grammar, rule).steps
-                self._entry[rule.name], self._ends[base + LAST] = base + FIRST, rule.name
-                self._steps += ([(s.symbol, base + s.target) for s in some] for some in steps)
-                self.forks += _forks(rule, chain.from_iterable(steps), base)
+        for rule in grammar.parser_rules:
+            base = len(self._steps)
+            steps = ordered_automaton(grammar, rule).steps
+            self._entry[rule.name], self._ends[base + LAST] = base + FIRST, rule.name
+            self._steps += ([(s.symbol, base + s.target) for s in some] for some in steps)
+            self.forks += _forks(rule, chain.from_iterable(steps), base)
         self._returns: dict[str, list[_Node]] = defaultdict(list)
         for symbol, target in chain.from_iterable(self._steps):
             if symbol in self._entry:

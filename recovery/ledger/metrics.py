@@ -68,7 +68,7 @@ def metrics(grammar: Grammar) -> Mapping[str, float]:
 
     Lookahead: DEC decisions, LL1 and LL2 the shares of them that one token, or at most two, decide.
     """
-    uses = {r.name: r.alternatives for r in grammar.rules if not r.is_lexer}
+    uses = {r.name: r.alternatives for r in grammar.parser_rules}
     operators: Counter[str] = Counter()
     symbols: Counter[str] = Counter()
     calls: dict[str, set[str]] = {}

@@ -61,12 +61,11 @@ class BracketGroups:
         """For each bracket that only one rule writes, around all that it reads, this rule."""
         grammar = self._matcher.recognizer.grammar
         found = {}
-        rules = [rule for rule in grammar.rules if not rule.is_lexer]
         for opening, closing in BRACKETS.items():
             writers = [
                 rule
-                for rule in rules
-                if any(_text(e) == opening for a in rule.alternatives for e in walk(a))
+                for rule in grammar.parser_rules
+                if any(_text(e) == opening for e in walk(rule))
             ]
             if len(writers) == 1 and all(
                 a.elements and (_text(a.elements[0]), _text(a.elements[-1])) == (opening, closing)

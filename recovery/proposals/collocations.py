@@ -50,10 +50,9 @@ class Collocations:
         self._lexer = recognizer.lexer
         self._behind: dict[Before, Counter[str]] = defaultdict(Counter)
         self._seen: set[tuple[Before, int, str, int]] = set()
-        for number, rule in enumerate(self.grammar.rules):
-            if not rule.is_lexer:
-                for alternative in rule.alternatives:
-                    self._sequence(number, alternative, frozenset([_BEGINNING]))
+        for number, rule in enumerate(self.grammar.parser_rules):
+            for alternative in rule.alternatives:
+                self._sequence(number, alternative, frozenset([_BEGINNING]))
 
     def usual(self, before: Before) -> dict[str, int]:
         """Return the rules and value tokens that are usual at such places, with their counts."""
@@ -132,8 +131,8 @@ class Collocations:
         users: dict[str, set[str]] = defaultdict(set)
         alone: set[tuple[str, str]] = set()
         words = sum(map(self._lexer.is_keyword, self._lexer.kind_of.values()))
-        for rule in self.grammar.rules:
-            if rule.is_lexer or WORD_LIST_PART * len(rule.alternatives) > words:
+        for rule in self.grammar.parser_rules:
+            if WORD_LIST_PART * len(rule.alternatives) > words:
                 continue
             for alternative in rule.alternatives:
                 tokens = [e for e in walk(alternative) if isinstance(e, Reference) and e.is_token]

@@ -24,6 +24,7 @@ from grammar.notation.model import (
     Repeat,
     Rule,
     reached,
+    referred,
     walk,
 )
 from grammar.parser.recognizer import Recognizer
@@ -57,8 +58,7 @@ class GrammarProfile:
     def _alternatives(self) -> dict[str, frozenset[str]]:
         return {
             rule.name: frozenset(" ".join(rule.source_of(a).split()) for a in rule.alternatives)
-            for rule in self.grammar.rules
-            if not rule.is_lexer
+            for rule in self.grammar.parser_rules
         }
 
     def closing(self, rule: str) -> str | None:
@@ -73,10 +73,10 @@ class GrammarProfile:
         """Rules whose alternatives end with a line end that they write themselves."""
         found: set[str] = set()
         for _ in range(2):  # a rule that is only another rule is at most one level deep
-            for rule in self.grammar.rules:
+            for rule in self.grammar.parser_rules:
                 ends = [
                     end
-                    for a in (() if rule.is_lexer else rule.alternatives)
+                    for a in rule.alternatives
                     # the end of a block tells nothing about lines
                     if (end := self._last(rule, a)) or not self._is_block(rule, a)
                 ]
@@ -105,9 +105,8 @@ class GrammarProfile:
         """Rules whose alternatives are all blocks."""
         return frozenset(
             rule.name
-            for rule in self.grammar.rules
-            if not rule.is_lexer
-            and all(
+            for rule in self.grammar.parser_rules
+            if all(
                 len(a.elements) == 1
                 and isinstance(e := a.elements[0], Reference)
                 and e.name in self.blocks
@@ -155,8 +154,8 @@ class GrammarProfile:
     def _beside(self) -> frozenset[tuple[str, str]]:
         """Pairs of element texts that are neighbours in some sequence."""
         found: set[tuple[str, str]] = set()
-        for rule in self.grammar.rules:
-            for _, sequence in () if rule.is_lexer else sequences(rule):
+        for rule in self.grammar.parser_rules:
+            for _, sequence in sequences(rule):
                 said = ["", *("".join(rule.source_of(e).split()) for e in sequence.elements), ""]
                 found |= set(pairwise(said))
         return frozenset(found)
@@ -165,10 +164,8 @@ class GrammarProfile:
     def _element_texts(self) -> frozenset[str]:
         return frozenset(
             "".join(rule.source_of(element).split())
-            for rule in self.grammar.rules
-            if not rule.is_lexer
-            for a in rule.alternatives
-            for element in walk(a)
+            for rule in self.grammar.parser_rules
+            for element in walk(rule)
             if isinstance(element, Repeat)
         )
 
@@ -204,12 +201,7 @@ class GrammarProfile:
 
     def near(self, rule: str) -> frozenset[str]:
         """Return the rules that a rule refers to."""
-        return frozenset(
-            e.name
-            for a in self.grammar.by_name[rule].alternatives
-            for e in walk(a)
-            if isinstance(e, Reference) and not e.is_token
-        )
+        return frozenset(n for n in referred(self.grammar.by_name[rule]) if not n[0].isupper())
 
     def width(self, rule: str) -> int:
         """Return how far an edit of a rule reaches: the more rules lead to it, the further."""
@@ -237,9 +229,8 @@ class GrammarProfile:
         """Rules of several lines: with a line end that is not their last element."""
         return frozenset(
             rule.name
-            for rule in self.grammar.rules
-            if not rule.is_lexer
-            and any(
+            for rule in self.grammar.parser_rules
+            if any(
                 isinstance(e, Reference)
                 and e.name in {*self.line_ends, self.recognizer.lexer.line_end}
                 for a in rule.alternatives
@@ -257,8 +248,7 @@ class GrammarProfile:
         """Keywords with which blocks begin and nothing else: what else does is no block."""
         first = [
             (rule.name in self.blocks, rule.source_of(a.elements[0]))
-            for rule in self.grammar.rules
-            if not rule.is_lexer
+            for rule in self.grammar.parser_rules
             for a in rule.alternatives
             if a.elements and self.vocabulary.is_keyword(a.elements[0])
         ]
@@ -270,12 +260,10 @@ class GrammarProfile:
         """Rules that consist only of line ends."""
         return frozenset(
             rule.name
-            for rule in self.grammar.rules
-            if not rule.is_lexer
-            and all(
+            for rule in self.grammar.parser_rules
+            if all(
                 isinstance(e, Reference) and e.name == self.recognizer.lexer.line_end
-                for a in rule.alternatives
-                for e in walk(a)
+                for e in walk(rule)
                 if not isinstance(e, Repeat | Group)
             )
         )
@@ -290,10 +278,8 @@ class GrammarProfile:
         """Rules that some rule repeats."""
         return frozenset(
             e.item.name
-            for rule in self.grammar.rules
-            if not rule.is_lexer
-            for a in rule.alternatives
-            for e in walk(a)
+            for rule in self.grammar.parser_rules
+            for e in walk(rule)
             if isinstance(e, Repeat) and e.operator != "?" and isinstance(e.item, Reference)
         )
 
@@ -301,8 +287,8 @@ class GrammarProfile:
     def bodies(self) -> list[tuple[str, ...]]:
         """The bodies of blocks in the grammar, the most frequent first."""
         found: Counter[tuple[str, ...]] = Counter()
-        for rule in self.grammar.rules:
-            for _, sequence in () if rule.is_lexer else sequences(rule):
+        for rule in self.grammar.parser_rules:
+            for _, sequence in sequences(rule):
                 body: list[str] = []
                 within = False
                 for element in sequence.elements:

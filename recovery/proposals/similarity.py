@@ -88,7 +88,7 @@ class Similarity:
     def _shared(self, rule: str, symbol: str) -> int:
         """Return how many alternatives a rule shares with one that has the symbol as another."""
         own = self.profile.alternatives(rule)
-        rules = (r.name for r in self.profile.grammar.rules if not r.is_lexer)
+        rules = (r.name for r in self.profile.grammar.parser_rules)
         others = (self.profile.alternatives(r) for r in rules if r != rule)
         return max((len(own & o) for o in others if symbol in o), default=0)
 
@@ -150,8 +150,8 @@ class Similarity:
     def _gathered(self) -> dict[str, frozenset[str]]:
         """For each rule the rules that have it as an alternative."""
         found: dict[str, set[str]] = defaultdict(set)
-        for rule in self.profile.grammar.rules:
-            if not rule.is_lexer and self.gathers(rule.name):
+        for rule in self.profile.grammar.parser_rules:
+            if self.gathers(rule.name):
                 for alternative in rule.alternatives:
                     only = self._only(rule, alternative)
                     if only is not None:

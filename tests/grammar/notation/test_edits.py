@@ -274,7 +274,7 @@ def places_of(rule: Rule) -> Iterator[tuple[tuple[int, ...], int]]:
 
 def a_widening(chance: Random, grammar: Grammar) -> Edit:
     """An edit that only ever adds programs."""
-    rule = chance.choice([r for r in grammar.rules if not r.is_lexer])
+    rule = chance.choice(grammar.parser_rules)
     address, size = chance.choice(list(places_of(rule)))
     text = chance.choice(TEXTS)
     place = chance.randint(1, size)
@@ -289,14 +289,14 @@ def a_widening(chance: Random, grammar: Grammar) -> Edit:
 
 def a_narrowing(chance: Random, grammar: Grammar) -> Edit:
     """An edit that only ever takes programs away."""
-    rules = [r for r in grammar.rules if not r.is_lexer and len(r.alternatives) > 1]
+    rules = [r for r in grammar.parser_rules if len(r.alternatives) > 1]
     rule = chance.choice(rules)
     return RemoveAlternative(rule.name, chance.randint(1, len(rule.alternatives)))
 
 
 def an_omission(chance: Random, grammar: Grammar) -> Edit:
     """An edit that changes programs."""
-    rule = chance.choice([r for r in grammar.rules if not r.is_lexer])
+    rule = chance.choice(grammar.parser_rules)
     address, size = chance.choice(list(places_of(rule)))
     return RemoveElement(rule.name, (*address, chance.randint(1, size)))
 

@@ -56,8 +56,8 @@ def branches(
     alternative at every reference to its rule, and no round, one round and several of each loop.
     A reference to a rule of ``words`` is one branch.
     """
-    for rule in grammar.rules:
-        for address, alternative in () if rule.is_lexer else sequences(rule):
+    for rule in grammar.parser_rules:
+        for address, alternative in sequences(rule):
             for place, element in enumerate(alternative.elements, 1):
                 at = (*address, place)
                 item: Element = element

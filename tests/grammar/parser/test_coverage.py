@@ -135,7 +135,7 @@ def test_random_grammars(random_grammar: Callable[[Random], Grammar], seed: int)
 
 def has_empty_rounds(grammar: Grammar) -> bool:
     lengths = shortest_lengths(grammar)
-    elements = (e for r in grammar.rules if not r.is_lexer for a in r.alternatives for e in walk(a))
+    elements = (e for r in grammar.parser_rules for e in walk(r))
     return any(isinstance(e, Repeat) and shortest_length(e.item, lengths) == 0 for e in elements)
 
 

@@ -113,7 +113,7 @@ def test_positions_that_pass_a_return_on(chance: Random, random_grammar: RandomG
 @given(chance=MANY)
 def test_exchanging_one_rule(chance: Random, mutated: Mutated) -> None:
     """A network with one rule exchanged reads like one linked anew; other positions stay."""
-    rule = chance.choice([r for r in PRELIMINARY.rules if not r.is_lexer])
+    rule = chance.choice(PRELIMINARY.parser_rules)
     text = chance.choice(["STRING", "WAIT NAME?", "'(' expression ')'", "ZZWORD (',' NAME)*"])
     changed = apply(PRELIMINARY, [AddToken("ZZWORD"), AddAlternative(rule.name, text)])
     old = network_of(PRELIMINARY)
@@ -145,7 +145,7 @@ def test_exchanging_one_rule(chance: Random, mutated: Mutated) -> None:
 def test_left_recursion_is_found(chance: Random, random_grammar: RandomGrammar) -> None:
     """The network has a left-recursive cycle exactly where reading the grammar finds one."""
     grammar = random_grammar(chance)
-    rules = [r.name for r in grammar.rules if not r.is_lexer]
+    rules = [r.name for r in grammar.parser_rules]
     words = [chance.choice([*rules[1:], "A", f"{rules[-1]}?"]) for _ in range(chance.randint(1, 3))]
     changed = apply(grammar, [AddAlternative(chance.choice(rules), " ".join(words))])
     found = "left recursion" in (problem(changed) or "")

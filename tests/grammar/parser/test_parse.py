@@ -269,7 +269,7 @@ def test_the_reading_that_antlr_takes(rules: Sequence[str], text: str, expected:
 def endless_loops(grammar: Grammar) -> bool:
     """Whether a loop may go round without reading, which ANTLR refuses."""
     lengths = shortest_lengths(grammar)
-    elements = (e for r in grammar.rules if not r.is_lexer for a in r.alternatives for e in walk(a))
+    elements = (e for r in grammar.parser_rules for e in walk(r))
     return any(
         isinstance(e, Repeat) and e.operator != "?" and shortest_length(e.item, lengths) == 0
         for e in elements

@@ -55,7 +55,7 @@ def test_where_in_the_rule_a_state_stands() -> None:
 def test_places_name_what_is_read_there(name: str, request: pytest.FixtureRequest) -> None:
     """A state reads the symbols of the elements at its places, and every place has a state."""
     grammar: Grammar = request.getfixturevalue(name)
-    for rule in (r for r in grammar.rules if not r.is_lexer):
+    for rule in grammar.parser_rules:
         automaton = rule_automaton(grammar, rule)
         lengths = {at: len(alternative.elements) for at, alternative in sequences(rule)}
         for edges, places in zip(automaton.edges, automaton.places, strict=True):
