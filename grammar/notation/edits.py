@@ -7,71 +7,144 @@ written to the ledger (`to_data`) and read back (`from_data`).
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
-from grammar.notation.addresses import Address, element_at, sequence_at
+from grammar.notation.addresses import Address, element_at, sequence_at, spelled
 from grammar.notation.g4 import read_rule
-from grammar.notation.model import Alternative, Element, Grammar, GrammarError, Rule
-from grammar.notation.rewriting import (
-    commented,
-    replaced,
-    widened,
-    with_alternative,
-    with_insertion,
-    with_optional,
-    with_preamble,
-    with_rule,
-    with_token,
-    without_alternative,
-    without_element,
-    without_rule,
-)
+from grammar.notation.model import Element, Grammar, GrammarError, Group, Repeat, Rule
+
+
+class _EditOfRule:
+    """The base of edits within the text of one rule.
+
+    ``_rewritten`` returns the new text of the rule and raises `GrammarError` if the edit does not
+    fit; ``_change`` says in words what it changes.
+    """
+
+    __slots__ = ()
+    rule: str
+
+    def _applied(self, grammar: Grammar) -> Grammar:
+        return grammar.with_rule(read_rule(self._rewritten(_rule(grammar, self.rule))))
+
+    def _rewritten(self, rule: Rule) -> str:
+        raise NotImplementedError
+
+    def _change(self, rule: Rule) -> str:
+        raise NotImplementedError
 
 
 @dataclass(frozen=True, slots=True)
-class Insert:
-    """Put ``text`` before the element at ``at``."""
+class Insert(_EditOfRule):
+    """Put ``text`` before the element at ``at``, or after the last one."""
 
     rule: str
     at: Address
     text: str
 
+    def _rewritten(self, rule: Rule) -> str:
+        elements, number = sequence_at(rule, self.at[:-1]).elements, self.at[-1]
+        if not 1 <= number <= len(elements) + 1:
+            raise GrammarError(f"rule {rule.name} has no place {spelled(self.at)}")
+        if not elements:
+            raise GrammarError(f"rule {rule.name}: an empty alternative at {spelled(self.at)}")
+        if number <= len(elements):
+            start = elements[number - 1].span[0]
+            return _spliced(rule, start, start, f"{self.text} ")
+        end = elements[-1].span[1]
+        return _spliced(rule, end, end, f" {self.text}")
+
+    def _change(self, rule: Rule) -> str:
+        words = list(map(rule.in_line, sequence_at(rule, self.at[:-1]).elements))
+        words.insert(self.at[-1] - 1, f"»{self.text}«")
+        return " ".join(words[max(0, self.at[-1] - 4) : self.at[-1] + 3])
+
 
 @dataclass(frozen=True, slots=True)
-class Widen:
-    """Accept ``text`` as an alternative to the element at ``at``."""
+class Widen(_EditOfRule):
+    """Accept ``text`` as an alternative to the element at ``at``.
+
+    It goes inside the element's parentheses and suffix.
+    """
 
     rule: str
     at: Address
     text: str
 
+    def _rewritten(self, rule: Rule) -> str:
+        element = element_at(rule, self.at)
+        item, suffix = (
+            (element.item, element.operator) if isinstance(element, Repeat) else (element, "")
+        )
+        old = rule.source_of(item)
+        inner = old[1:-1] if isinstance(item, Group) else old
+        return _spliced(rule, *element.span, f"({inner} | {self.text}){suffix}")
+
+    def _change(self, rule: Rule) -> str:
+        return f"»{self.text}« too where {rule.in_line(element_at(rule, self.at))} stands"
+
 
 @dataclass(frozen=True, slots=True)
-class MakeOptional:
+class MakeOptional(_EditOfRule):
     """Make the ``count`` elements from ``at`` on optional, as one group."""
 
     rule: str
     at: Address
     count: int = 1
 
+    def _rewritten(self, rule: Rule) -> str:
+        first, *others = _elements(rule, self.at, self.count)
+        start, end = first.span[0], (others or [first])[-1].span[1]
+        old = rule.text[start:end]
+        if others:
+            new = f"({old})?"
+        elif isinstance(first, Repeat):
+            new = old[:-1] + "*" if first.operator == "+" else old
+        else:
+            new = f"{old}?"
+        return _spliced(rule, start, end, new)
+
+    def _change(self, rule: Rule) -> str:
+        chosen = _elements(rule, self.at, self.count)
+        return f"{' '.join(map(rule.in_line, chosen))} may be left out"
+
 
 @dataclass(frozen=True, slots=True)
-class AddAlternative:
-    """Append an alternative to a rule."""
+class AddAlternative(_EditOfRule):
+    """Append an alternative to a rule, laid out like the others."""
 
     rule: str
     text: str
 
+    def _rewritten(self, rule: Rule) -> str:
+        body, semicolon = rule.text[:-1].rstrip(), rule.text[-1]
+        gap = rule.text[len(body) : -1]
+        indent = "\n    " if "\n" in rule.text else " "
+        return f"{body}{indent}| {self.text}{gap}{semicolon}"
+
+    def _change(self, rule: Rule) -> str:
+        del rule
+        return f"or {self.text}"
+
 
 @dataclass(frozen=True, slots=True)
-class Replace:
+class Replace(_EditOfRule):
     """Put ``text`` in place of the ``count`` elements from ``at`` on."""
 
     rule: str
     at: Address
     text: str
     count: int = 1
+
+    def _rewritten(self, rule: Rule) -> str:
+        chosen = _elements(rule, self.at, self.count)
+        return _spliced(rule, chosen[0].span[0], chosen[-1].span[1], self.text)
+
+    def _change(self, rule: Rule) -> str:
+        old = " ".join(map(rule.in_line, _elements(rule, self.at, self.count)))
+        return f"»{self.text}« instead of {old}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,13 +158,36 @@ class AddRule:
     text: str
     comment: str = ""
 
+    def _applied(self, grammar: Grammar) -> Grammar:
+        index = grammar.rules.index(_rule(grammar, self.after)) + 1
+        rule = read_rule(self.text)
+        if rule.name in grammar.by_name:
+            raise GrammarError(f"rule {rule.name} exists already")
+        rules = (*grammar.rules[:index], rule, *grammar.rules[index:])
+        gaps = (*grammar.gaps[:index], "\n\n", *grammar.gaps[index:])
+        grown = replace(grammar, rules=rules, gaps=gaps)
+        return SetComment(rule.name, self.comment)._applied(grown) if self.comment else grown
+
 
 @dataclass(frozen=True, slots=True)
 class SetComment:
-    """Give a rule the comment ``text``, without slashes, instead of the one it has."""
+    """Give a rule the comment ``text``, without slashes, instead of the one it has.
+
+    The comment is what stands between the rule and the blank line above it.
+    """
 
     rule: str
     text: str
+
+    def _applied(self, grammar: Grammar) -> Grammar:
+        index = grammar.rules.index(_rule(grammar, self.rule))
+        above, blank, _ = grammar.gaps[index].rpartition("\n\n")
+        if not blank:
+            wrong = "has no blank line above it, so no comment of its own"
+            raise GrammarError(f"rule {self.rule} {wrong}")
+        lines = "".join(f"// {line}".rstrip() + "\n" for line in self.text.splitlines())
+        gaps = (*grammar.gaps[:index], above + blank + lines, *grammar.gaps[index + 1 :])
+        return replace(grammar, gaps=gaps)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,35 +196,105 @@ class Preamble:
 
     text: str
 
+    def _applied(self, grammar: Grammar) -> Grammar:
+        found = re.match(r"\s*/\*.*?\*/\s*", grammar.gaps[0], re.DOTALL)
+        rest = grammar.gaps[0][found.end() :] if found else grammar.gaps[0]
+        if "*/" in self.text:
+            raise GrammarError("a preamble cannot hold the end of a comment")
+        lines = "".join(f" * {line}".rstrip() + "\n" for line in self.text.splitlines())
+        return replace(grammar, gaps=(f"/*\n{lines} */\n{rest}", *grammar.gaps[1:]))
+
 
 @dataclass(frozen=True, slots=True)
 class AddToken:
-    """Reserve a keyword: a lexer rule ``NAME : 'NAME' ;`` in its alphabetical place."""
+    """Reserve a keyword: a lexer rule ``NAME : 'NAME' ;`` in its alphabetical place.
+
+    That is among the rules whose names are their own text. If there are none, it comes before all
+    other tokens, since the first of two rules that match the same text wins.
+    """
 
     name: str
 
+    def _applied(self, grammar: Grammar) -> Grammar:
+        name = self.name
+        if name in grammar.by_name:
+            raise GrammarError(f"token {name} exists already")
+        if not re.fullmatch(r"[A-Z][A-Za-z0-9_]*", name):
+            raise GrammarError(f"{name!r} is not the name of a token")
+        keywords = [
+            i for i, rule in enumerate(grammar.rules) if re.fullmatch(r"(\w+) : '\1' ;", rule.text)
+        ]
+        before = [i for i in keywords if _in_order(grammar.rules[i].name) < _in_order(name)]
+        tokens = keywords or [i for i, rule in enumerate(grammar.rules) if rule.is_lexer]
+        if not tokens:
+            raise GrammarError("the grammar has no tokens yet")
+        rule = read_rule(f"{name} : '{name}' ;")
+        index = before[-1] + 1 if before else tokens[0]
+        rules = (*grammar.rules[:index], rule, *grammar.rules[index:])
+        gap = index if before else index + 1
+        gaps = (*grammar.gaps[:gap], "\n", *grammar.gaps[gap:])
+        return replace(grammar, rules=rules, gaps=gaps)
+
 
 @dataclass(frozen=True, slots=True)
-class RemoveAlternative:
+class RemoveAlternative(_EditOfRule):
     """Remove an alternative, counted from 1; the rule keeps at least one."""
 
     rule: str
     alternative: int
 
+    def _rewritten(self, rule: Rule) -> str:
+        number = self.alternative
+        if not 1 <= number <= len(rule.alternatives) or len(rule.alternatives) == 1:
+            raise GrammarError(f"rule {rule.name} cannot lose alternative {number}")
+        start, end = rule.alternatives[number - 1].span
+        if start == end:
+            raise GrammarError(f"rule {rule.name}: alternative {number} is empty")
+        if label := re.match(r"\s*#\s*\w+", rule.text[end:]):
+            end += label.end()
+        if number > 1:
+            start = len(rule.text[: rule.text.rindex("|", 0, start)].rstrip())
+            return _spliced(rule, start, end, "")
+        following = rule.text.index("|", end)
+        return rule.text[:start] + rule.text[following + 1 :].lstrip()
+
+    def _change(self, rule: Rule) -> str:
+        return f"without the alternative {rule.in_line(rule.alternatives[self.alternative - 1])}"
+
 
 @dataclass(frozen=True, slots=True)
-class RemoveElement:
-    """Remove the element at ``at``; the alternative may become empty."""
+class RemoveElement(_EditOfRule):
+    """Remove the element at ``at`` and one blank beside it; the alternative may become empty."""
 
     rule: str
     at: Address
 
+    def _rewritten(self, rule: Rule) -> str:
+        start, end = element_at(rule, self.at).span
+        while start and rule.text[start - 1] == " " and rule.text[end : end + 1] in " \r\n)":
+            start -= 1
+        if rule.text[start - 1] == "(" and rule.text[end] == " ":
+            end += 1
+        return _spliced(rule, start, end, "")
+
+    def _change(self, rule: Rule) -> str:
+        return f"without {rule.in_line(element_at(rule, self.at))}"
+
 
 @dataclass(frozen=True, slots=True)
 class RemoveRule:
-    """Remove a rule; nothing may refer to it any more."""
+    """Remove a rule and the comment above it; nothing may refer to it any more."""
 
     rule: str
+
+    def _applied(self, grammar: Grammar) -> Grammar:
+        index = grammar.rules.index(_rule(grammar, self.rule))
+        joined = grammar.gaps[index].rstrip("\n ") + grammar.gaps[index + 1]
+        return replace(
+            grammar,
+            rules=(*grammar.rules[:index], *grammar.rules[index + 1 :]),
+            gaps=(*grammar.gaps[:index], joined, *grammar.gaps[index + 2 :]),
+        )
 
 
 #: Edits within the text of one rule.
@@ -146,31 +312,30 @@ def apply(grammar: Grammar, edits: Sequence[Edit]) -> Grammar:
     (`grammar.notation.g4.read`) before you keep it.
     """
     for edit in edits:
-        grammar = _apply(grammar, edit)
+        grammar = edit._applied(grammar)
     return grammar
-
-
-def _apply(grammar: Grammar, edit: Edit) -> Grammar:
-    match edit:
-        case AddToken(name=name):
-            return with_token(grammar, name)
-        case AddRule(after=after, text=text, comment=comment):
-            grown = with_rule(grammar, _rule(grammar, after), text)
-            added = grown.rules[grammar.rules.index(grammar.by_name[after]) + 1]
-            return commented(grown, added, comment) if comment else grown
-        case SetComment(rule=name, text=text):
-            return commented(grammar, _rule(grammar, name), text)
-        case Preamble(text=text):
-            return with_preamble(grammar, text)
-        case RemoveRule(rule=name):
-            return without_rule(grammar, _rule(grammar, name))
-        case _:
-            return grammar.with_rule(apply_to_rule(_rule(grammar, edit.rule), edit))
 
 
 def apply_to_rule(rule: Rule, edit: EditOfRule) -> Rule:
     """Return the rule after an edit of it; raises `GrammarError` if the edit does not fit."""
-    return read_rule(_new_text(rule, edit))
+    return read_rule(edit._rewritten(rule))
+
+
+def describe(grammar: Grammar, edit: Edit) -> str:
+    """Return one line for a person: what the edit changes, with the elements around its place."""
+    match edit:
+        case AddToken(name=name):
+            return f"reserve {name}"
+        case SetComment(rule=name):
+            return f"{name}: its comment"
+        case Preamble():
+            return "the opening comment"
+        case AddRule(text=text):
+            return "new rule " + " ".join(text.split())
+        case RemoveRule(rule=name):
+            return f"without rule {name}"
+        case _:
+            return f"{edit.rule}: {edit._change(grammar.by_name[edit.rule])}"
 
 
 def _rule(grammar: Grammar, name: str) -> Rule:
@@ -180,22 +345,18 @@ def _rule(grammar: Grammar, name: str) -> Rule:
         raise GrammarError(f"there is no rule {name}") from None
 
 
-def _new_text(rule: Rule, edit: EditOfRule) -> str:
-    match edit:
-        case AddAlternative(text=text):
-            return with_alternative(rule, text)
-        case RemoveAlternative(alternative=number):
-            return without_alternative(rule, number)
-        case Insert(at=at, text=text):
-            return with_insertion(rule, at, text)
-        case Widen(at=at, text=text):
-            return widened(rule, at, text)
-        case MakeOptional(at=at, count=count):
-            return with_optional(rule, at, count)
-        case Replace(at=at, text=text, count=count):
-            return replaced(rule, at, count, text)
-        case RemoveElement(at=at):
-            return without_element(rule, at)
+def _elements(rule: Rule, at: Address, count: int) -> list[Element]:
+    """Return ``count`` consecutive elements; raises `GrammarError` if one is missing."""
+    return [element_at(rule, (*at[:-1], at[-1] + n)) for n in range(count)]
+
+
+def _spliced(rule: Rule, start: int, end: int, text: str) -> str:
+    return rule.text[:start] + text + rule.text[end:]
+
+
+def _in_order(name: str) -> str:
+    """Return a sort key that puts a word before longer ones: C_PTP before CHAR."""
+    return name.replace("_", " ")
 
 
 # ------------------------------------------------------------------------- edits as data
@@ -248,55 +409,3 @@ def from_data(data: Mapping[str, object]) -> Edit:
         return cls(**values)  # type: ignore[arg-type]  # as looked at above
     except TypeError:
         raise GrammarError(f"edit {data['edit']}: a field is missing") from None
-
-
-def describe(grammar: Grammar, edit: Edit) -> str:
-    """Return one line for a person: what the edit changes, with the elements around its place."""
-    match edit:
-        case AddToken(name=name):
-            return f"reserve {name}"
-        case SetComment(rule=rule):
-            return f"{rule}: its comment"
-        case Preamble():
-            return "the opening comment"
-        case AddRule(text=text):
-            return "new rule " + " ".join(text.split())
-        case RemoveRule(rule=rule):
-            return f"without rule {rule}"
-        case _:
-            return f"{edit.rule}: {_change(grammar, edit)}"
-
-
-def _change(grammar: Grammar, edit: EditOfRule) -> str:
-    match edit:
-        case AddAlternative(text=text):
-            return f"or {text}"
-        case RemoveAlternative(rule=rule, alternative=number):
-            text = _source(grammar, rule, grammar.by_name[rule].alternatives[number - 1])
-            return f"without the alternative {text}"
-        case Insert(rule=rule, at=at, text=text):
-            sequence = sequence_at(grammar.by_name[rule], at[:-1])
-            words = [_source(grammar, rule, e) for e in sequence.elements]
-            words.insert(at[-1] - 1, f"»{text}«")
-            return " ".join(words[max(0, at[-1] - 4) : at[-1] + 3])
-        case Widen(rule=rule, at=at, text=text):
-            return f"»{text}« too where {_source_at(grammar, rule, at)} stands"
-        case MakeOptional(rule=rule, at=at, count=count):
-            elements = sequence_at(grammar.by_name[rule], at[:-1]).elements
-            chosen = elements[at[-1] - 1 : at[-1] - 1 + count]
-            return f"{' '.join(_source(grammar, rule, e) for e in chosen)} may be left out"
-        case Replace(rule=rule, at=at, text=text, count=count):
-            elements = sequence_at(grammar.by_name[rule], at[:-1]).elements
-            chosen = elements[at[-1] - 1 : at[-1] - 1 + count]
-            old = " ".join(_source(grammar, rule, e) for e in chosen)
-            return f"»{text}« instead of {old}"
-        case RemoveElement(rule=rule, at=at):
-            return f"without {_source_at(grammar, rule, at)}"
-
-
-def _source(grammar: Grammar, rule: str, node: Element | Alternative) -> str:
-    return " ".join(grammar.by_name[rule].source_of(node).split())
-
-
-def _source_at(grammar: Grammar, rule: str, at: Address) -> str:
-    return _source(grammar, rule, element_at(grammar.by_name[rule], at))

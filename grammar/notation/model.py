@@ -129,6 +129,10 @@ class Rule:
         """Return the text of a part of this rule, as written."""
         return self.text[node.span[0] : node.span[1]]
 
+    def in_line(self, node: Element | Alternative) -> str:
+        """Return the text of a part with single blanks between its words."""
+        return " ".join(self.source_of(node).split())
+
 
 @dataclass(frozen=True)
 class Grammar:

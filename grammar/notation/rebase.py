@@ -71,7 +71,7 @@ def _rules(name: str, whole: Grammar, other: Grammar) -> tuple[Rule, Rule]:
 
 def _texts(rule: Rule, sequence: Alternative) -> list[str]:
     """Return the elements of a sequence as written, between two empty texts."""
-    return ["", *(" ".join(rule.source_of(e).split()) for e in sequence.elements), ""]
+    return ["", *map(rule.in_line, sequence.elements), ""]
 
 
 def _context(texts: list[str], first: int, count: int) -> _Context:

@@ -216,7 +216,7 @@ def _with_edit(
 def _changed(text: str, edit: EditOfRule) -> str:
     """Return a text after an edit of the rule that it makes up."""
     changed = apply_to_rule(read_rule(f"{edit.rule} : {text} ;"), edit)
-    return " ".join(changed.source_of(changed.alternatives[0]).split())
+    return changed.in_line(changed.alternatives[0])
 
 
 def _rewritten(edits: Sequence[Edit], old: str, new: str) -> list[Edit]:

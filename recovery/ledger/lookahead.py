@@ -159,7 +159,7 @@ def _forks(rule: Rule, steps: Iterable[Step], base: _Node) -> list[_Fork]:
 
 
 def _written(rule: Rule, node: Element | Alternative) -> str:
-    text = " ".join(rule.source_of(node).split()) or "nothing"
+    text = rule.in_line(node) or "nothing"
     return text if len(text) <= _WIDEST else text[: _WIDEST - 1] + "…"
 
 

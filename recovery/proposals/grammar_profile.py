@@ -57,7 +57,7 @@ class GrammarProfile:
     @cached_property
     def _alternatives(self) -> dict[str, frozenset[str]]:
         return {
-            rule.name: frozenset(" ".join(rule.source_of(a).split()) for a in rule.alternatives)
+            rule.name: frozenset(map(rule.in_line, rule.alternatives))
             for rule in self.grammar.parser_rules
         }
 
