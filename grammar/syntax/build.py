@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from operator import add
-from typing import Any, NamedTuple
+from typing import Any
 
 from grammar.notation.krl_grammar import krl_grammar
 from grammar.parser.failures import Failure, FailureFinder
@@ -23,6 +23,7 @@ from grammar.parser.tree import Outline, Tree
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.node_plans import MAX_DEPTH, Plan, TooDeep, draft
+from grammar.syntax.parts import Field, Part, at, each, has, one, value_of, values_of
 from grammar.syntax.statement_rules import CHAINS, RULES
 from support.lazy_dataclass import dataclass
 
@@ -103,7 +104,7 @@ class Builder:
             for child in frame.children:  # an iterator: continues where it stopped
                 if not isinstance(child, Outline):
                     end = ends[at]
-                    pieces.append(_Piece(names[child], lexemes[at], starts[at], end))
+                    pieces.append(Part(names[child], lexemes[at], starts[at], end))
                     at += 1
                     continue
                 if child.rule == "eol":
@@ -114,7 +115,7 @@ class Builder:
                 if plan is not None:
                     value = plan.run(lexemes, starts, ends, at)
                     start, end = starts[at], ends[at + plan.width - 1]
-                    pieces.append(_Piece(child.rule, value, start, end))
+                    pieces.append(Part(child.rule, value, start, end))
                     if plan.calls:
                         called.update(lexemes[at + token].upper() for token in plan.calls)
                     at += child.width
@@ -127,7 +128,7 @@ class Builder:
                 if not outer:
                     assert isinstance(value, ast.Module)
                     return replace(value, called=frozenset(called))
-                piece = _Piece(frame.rule, value, frame.start, end)
+                piece = Part(frame.rule, value, frame.start, end)
                 frame = outer.pop()
                 frame.pieces.append(piece)
 
@@ -166,18 +167,6 @@ def _without_end(outline: Outline) -> Outline:
     return Outline(outline.rule, tuple(before)) if is_end else outline
 
 
-class _Piece(NamedTuple):
-    """A child of a block: a token with its text, or a rule with its node. No line ends.
-
-    ``start`` and ``end`` are offsets.
-    """
-
-    symbol: str
-    value: Any
-    start: int
-    end: int
-
-
 class _Frame:
     """A block whose children are being built; ``children`` iterates over the remaining ones."""
 
@@ -185,118 +174,86 @@ class _Frame:
 
     def __init__(self, outline: Outline, start: int) -> None:
         self.children = iter(outline.children)
-        self.pieces: list[_Piece] = []
+        self.pieces: list[Part[Any]] = []
         self.rule = outline.rule
         self.start = start
 
 
 # ------------------------------------------------------------------------ rules that span lines
+#: Builds the node of a rule from its span and its children.
+_Block = Callable[[Span, Sequence[Part[Any]]], Any]
 
 
-def _value(pieces: Sequence[_Piece], symbol: str) -> Any:
-    """Return the value of the first piece of this kind, or ``None`` if there is none."""
-    return next((piece.value for piece in pieces if piece.symbol == symbol), None)
+def _node(kind: Callable[..., ast.Node], *of: Field) -> _Block:
+    """Return a function for a rule whose node has these fields."""
+    return lambda span, pieces: kind(span, *(field(pieces) for field in of))
 
 
-def _values(pieces: Sequence[_Piece], symbol: str) -> tuple[Any, ...]:
-    return tuple([piece.value for piece in pieces if piece.symbol == symbol])
-
-
-def _has(pieces: Sequence[_Piece], symbol: str) -> bool:
-    return any(piece.symbol == symbol for piece in pieces)
-
-
-def _only(_span: Span, pieces: Sequence[_Piece]) -> Any:
+def _only(_span: Span, pieces: Sequence[Part[Any]]) -> Any:
     return pieces[0].value
 
 
-def _module(span: Span, pieces: Sequence[_Piece]) -> ast.Module:
+def _module(span: Span, pieces: Sequence[Part[Any]]) -> ast.Module:
     headers = tuple(
-        ast.Header((piece.start, piece.end), piece.value)
+        ast.Header((piece.first, piece.stop), piece.value)
         for piece in pieces
         if piece.symbol == "HEADER"
     )
-    content = _value(pieces, "program") or _value(pieces, "dataList")
+    content: Any = value_of(pieces, "program") or value_of(pieces, "dataList")
     return ast.Module(span, headers, content)
 
 
-def _program(span: Span, pieces: Sequence[_Piece]) -> ast.Program:
-    return ast.Program(span, _values(pieces, "routine"))
-
-
-def _routine(span: Span, pieces: Sequence[_Piece]) -> ast.Routine:
-    name = _value(pieces, "name")
-    parameters = _value(pieces, "parameters") or ()
-    body = _values(pieces, "statement")
+def _routine(span: Span, pieces: Sequence[Part[Any]]) -> ast.Routine:
+    name: Any = value_of(pieces, "name")
+    parameters = value_of(pieces, "parameters") or ()
+    body = values_of(pieces, "statement")
     is_global = pieces[0].symbol == "GLOBAL"
     return ast.Routine(span, is_global, _result(pieces), name, parameters, body)
 
 
-def _result(pieces: Sequence[_Piece]) -> ast.TypeName | None:
+def _result(pieces: Sequence[Part[Any]]) -> ast.TypeName | None:
     """Return the result type of a function, or ``None`` for a procedure."""
     chosen = [piece for piece in pieces if piece.symbol in ("type", "index")]
     if not chosen:
         return None
-    span = chosen[0].start, chosen[-1].end
-    return ast.TypeName(span, chosen[0].value, _value(chosen, "index"))
+    span = chosen[0].first, chosen[-1].stop
+    return ast.TypeName(span, chosen[0].value, value_of(chosen, "index"))
 
 
-def _data_list(span: Span, pieces: Sequence[_Piece]) -> ast.DataList:
-    is_public = _has(pieces[:3], "PUBLIC")
-    return ast.DataList(span, pieces[1].value, is_public, _values(pieces, "initialisation"))
+def _data_list(span: Span, pieces: Sequence[Part[Any]]) -> ast.DataList:
+    is_public = has(pieces[:3], "PUBLIC")
+    return ast.DataList(span, pieces[1].value, is_public, values_of(pieces, "initialisation"))
 
 
-def _if(span: Span, pieces: Sequence[_Piece]) -> ast.If:
-    condition = pieces[1].value
+def _if(span: Span, pieces: Sequence[Part[Any]]) -> ast.If:
+    condition, otherwise = pieces[1].value, None
     for place, piece in enumerate(pieces):
         if piece.symbol == "ELSE":
-            body, otherwise = pieces[:place], pieces[place:]
-            return ast.If(
-                span, condition, _values(body, "statement"), _values(otherwise, "statement")
-            )
-    return ast.If(span, condition, _values(pieces, "statement"), None)
+            otherwise = values_of(pieces[place:], "statement")
+            pieces = pieces[:place]
+            break
+    return ast.If(span, condition, values_of(pieces, "statement"), otherwise)
 
 
-def _for(span: Span, pieces: Sequence[_Piece]) -> ast.For:
-    first, last, *step = _values(pieces, "expression")
-    body = _values(pieces, "statement")
+def _for(span: Span, pieces: Sequence[Part[Any]]) -> ast.For:
+    first, last, *step = values_of(pieces, "expression")
+    body = values_of(pieces, "statement")
     return ast.For(span, pieces[1].value, first, last, step[0] if step else None, body)
 
 
-def _while(span: Span, pieces: Sequence[_Piece]) -> ast.While:
-    return ast.While(span, pieces[1].value, _values(pieces, "statement"))
+def _default(_span: Span, pieces: Sequence[Part[Any]]) -> tuple[ast.Statement, ...]:
+    return values_of(pieces, "statement")
 
 
-def _repeat(span: Span, pieces: Sequence[_Piece]) -> ast.Repeat:
-    return ast.Repeat(span, _values(pieces, "statement"), pieces[-1].value)
-
-
-def _loop(span: Span, pieces: Sequence[_Piece]) -> ast.Loop:
-    return ast.Loop(span, _values(pieces, "statement"))
-
-
-def _switch(span: Span, pieces: Sequence[_Piece]) -> ast.Switch:
-    branches = _values(pieces, "caseBranch")
-    return ast.Switch(span, pieces[1].value, branches, _value(pieces, "defaultBranch"))
-
-
-def _case(span: Span, pieces: Sequence[_Piece]) -> ast.CaseBranch:
-    return ast.CaseBranch(span, _values(pieces, "caseValue"), _values(pieces, "statement"))
-
-
-def _default(_span: Span, pieces: Sequence[_Piece]) -> tuple[ast.Statement, ...]:
-    return _values(pieces, "statement")
-
-
-def _spline_block(span: Span, pieces: Sequence[_Piece]) -> ast.SplineBlock:
-    values, items = _value(pieces, "with") or (), _values(pieces, "splineItem")
+def _spline_block(span: Span, pieces: Sequence[Part[Any]]) -> ast.SplineBlock:
+    values, items = value_of(pieces, "with") or (), values_of(pieces, "splineItem")
     is_approximated = pieces[-1].symbol == "C_SPL"
     return ast.SplineBlock(span, pieces[0].symbol, values, items, is_approximated)
 
 
-_BLOCKS: Mapping[str, Callable[[Span, Sequence[_Piece]], Any]] = {
+_BLOCKS: Mapping[str, _Block] = {
     "module": _module,
-    "program": _program,
+    "program": _node(ast.Program, each("routine")),
     "routine": _only,
     "procedure": _routine,
     "function": _routine,
@@ -304,14 +261,13 @@ _BLOCKS: Mapping[str, Callable[[Span, Sequence[_Piece]], Any]] = {
     "statement": _only,
     "ifStatement": _if,
     "forStatement": _for,
-    "whileStatement": _while,
-    "repeatStatement": _repeat,
-    "loopStatement": _loop,
-    "switchStatement": _switch,
-    "caseBranch": _case,
+    "whileStatement": _node(ast.While, at(1), each("statement")),
+    "repeatStatement": _node(ast.Repeat, each("statement"), at(-1)),
+    "loopStatement": _node(ast.Loop, each("statement")),
+    "switchStatement": _node(ast.Switch, at(1), each("caseBranch"), one("defaultBranch")),
+    "caseBranch": _node(ast.CaseBranch, each("caseValue"), each("statement")),
     "defaultBranch": _default,
     "splineBlock": _spline_block,
 }
-
 #: Rules that span lines; any other rule ends on its line, except ``eol``.
 BLOCK_RULES = frozenset(_BLOCKS)

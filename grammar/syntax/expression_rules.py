@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
-from grammar.syntax.node_plans import Draft, DraftPart, Rule, Value, separated, value_of, values_of
+from grammar.syntax.node_plans import Draft, Parts, Rule, Value, node
+from grammar.syntax.parts import Part, at, each, one, separated, value_of
 
 # Types whose names are keywords: they are kept in upper case.
 _KEYWORD_TYPES = frozenset("INT REAL BOOL CHAR FRAME POS E3POS E6POS AXIS E3AXIS E6AXIS".split())
@@ -58,19 +59,19 @@ _LITERALS: Mapping[str, Callable[[Span, str], ast.Node]] = {
 }
 
 
-def _name(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _name(draft: Draft, parts: Parts) -> Value:
     return draft.over(ast.Name, parts, parts[0].first)
 
 
-def _position_type(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _position_type(_draft: Draft, parts: Parts) -> Value:
     return parts[0].value
 
 
-def _type(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _type(draft: Draft, parts: Parts) -> Value:
     return draft.over(_type_of, parts, parts[0].first)
 
 
-def type_name(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def type_name(draft: Draft, parts: Parts) -> Value:
     """Return the result type of an external function, or ``None`` for a procedure."""
     chosen = [part for part in parts if part.symbol in ("type", "index")]
     if not chosen:
@@ -78,7 +79,7 @@ def type_name(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return draft.over(ast.TypeName, chosen, chosen[0].value, value_of(chosen, "index"))
 
 
-def literal(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def literal(draft: Draft, parts: Parts) -> Value:
     """Return the node of a literal; any other child is returned as it is."""
     (only,) = parts
     make = _LITERALS.get(only.symbol)
@@ -102,15 +103,15 @@ _OPERATORS = {
 }
 
 
-def _operator(part: DraftPart) -> Value:
+def _operator(part: Part[Value]) -> Value:
     return part.value if part.symbol == "relation" else _OPERATORS.get(part.symbol, part.symbol)
 
 
-def _relation(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _relation(_draft: Draft, parts: Parts) -> Value:
     return _operator(parts[0])
 
 
-def _infix(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _infix(draft: Draft, parts: Parts) -> Value:
     """Return the node of a chain of operators of equal rank, which are left-associative."""
     value, chain = parts[0].value, None
     for operator, right in zip(parts[1::2], parts[2::2], strict=True):
@@ -119,7 +120,7 @@ def _infix(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return value
 
 
-def _prefix(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _prefix(draft: Draft, parts: Parts) -> Value:
     if len(parts) == 1:
         return parts[0].value
     return draft.over(_unary_of, parts, _operator(parts[0]), parts[1].value)
@@ -135,13 +136,13 @@ def _unary_of(span: Span, operator: str, operand: ast.Expression) -> ast.Unary |
     return ast.Unary(span, operator, operand)
 
 
-def _primary(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _primary(draft: Draft, parts: Parts) -> Value:
     if len(parts) == 1:
         return parts[0].value
     return draft.over(ast.Parenthesised, parts, parts[1].value)
 
 
-def _variable(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _variable(draft: Draft, parts: Parts) -> Value:
     first = parts[0].first
     value = draft.node(ast.Variable, first, parts[0].stop, parts[0].value)
     for part in parts[1:]:
@@ -152,28 +153,18 @@ def _variable(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return value
 
 
-def _index(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _index(_draft: Draft, parts: Parts) -> Value:
     return separated(parts[1:-1])
 
 
-def _arguments(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _arguments(_draft: Draft, parts: Parts) -> Value:
     return separated(parts) if parts else ()
 
 
-def _argument(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _argument(draft: Draft, parts: Parts) -> Value:
     if len(parts) == 1:
         return parts[0].value
     return draft.over(ast.ChannelName, parts, parts[1].value)
-
-
-def _aggregate(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    return draft.over(ast.Aggregate, parts, value_of(parts, "name"), values_of(parts, "component"))
-
-
-def _component(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    return draft.over(
-        ast.Component, parts, parts[0].value, value_of(parts, "index"), parts[-1].value
-    )
 
 
 #: By the name of the rule.
@@ -204,6 +195,6 @@ EXPRESSION_RULES: Mapping[str, Rule] = {
     "literal": literal,
     "number": literal,
     "constant": _prefix,
-    "aggregate": _aggregate,
-    "component": _component,
+    "aggregate": node(ast.Aggregate, one("name"), each("component")),
+    "component": node(ast.Component, at(0), one("index"), at(-1)),
 }

@@ -14,10 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from operator import itemgetter
-from typing import Any, NamedTuple
+from typing import Any
 
 from grammar.parser.tree import Outline
 from grammar.syntax.ast import Call, Span
+from grammar.syntax.parts import Field, Part
 from support.lazy_dataclass import dataclass
 
 #: Greatest depth of nodes within a line; a chain of operators counts once. Code that walks an
@@ -28,6 +29,7 @@ _MOST_FRAMES = 3 * MAX_DEPTH + 10
 
 #: The result of a rule: a slot in the list of values, a constant, or a sequence of these.
 Value = int | str | bool | None | tuple["Value", ...]
+Parts = Sequence[Part[Value]]
 
 
 class TooDeep(Exception):
@@ -50,18 +52,6 @@ class NoNode(Exception):
             f"the syntax tree has no node for a form of {self.rule} that the grammar reads: see "
             "CONTRIBUTING.md, the recipe for constructs, step 6"
         )
-
-
-class DraftPart(NamedTuple):
-    """A child of a rule: a token, whose value is its slot, or a rule and its result.
-
-    ``first`` and ``stop`` are token indices; ``stop`` is excluded.
-    """
-
-    symbol: str
-    value: Value
-    first: int
-    stop: int
 
 
 class Draft:
@@ -99,7 +89,7 @@ class Draft:
         self._depths.append(depth)
         return self._width + len(self._steps) - 1
 
-    def over(self, make: Callable[..., object], parts: Sequence[DraftPart], *values: Value) -> int:
+    def over(self, make: Callable[..., object], parts: Parts, *values: Value) -> int:
         """Add a step whose span is that of ``parts``; return the slot of its result."""
         return self.node(make, parts[0].first, parts[-1].stop, *values)
 
@@ -162,7 +152,12 @@ class Plan:
 
 
 #: Drafts the nodes of a rule of the grammar from its children and returns its result.
-Rule = Callable[[Draft, Sequence[DraftPart]], Value]
+Rule = Callable[[Draft, Parts], Value]
+
+
+def node(kind: Callable[..., object], *of: Field) -> Rule:
+    """Return a function for a rule whose node has these fields."""
+    return lambda draft, parts: draft.over(kind, parts, *(field(parts) for field in of))
 
 
 def draft(
@@ -174,7 +169,7 @@ def draft(
     rule. Raises `TooDeep`, and `NoNode` where the rules do not know what the grammar reads.
     """
     plan = Draft(outline.width)
-    top: list[DraftPart] = []
+    top: list[Part[Value]] = []
     frames = [_Frame(outline, 0, top, chains)]
     while frames:
         frame = frames[-1]
@@ -191,14 +186,14 @@ def draft(
                 frames.append(_Frame(child, at, frame.parts, chains))
             else:
                 frame.at += 1
-                frame.parts.append(DraftPart(names[child], at, at, at + 1))
+                frame.parts.append(Part(names[child], at, at, at + 1))
         else:
             frames.pop()
             try:
                 value = rules[frame.inner.rule](plan, frame.parts)
             except (AssertionError, LookupError, TypeError, ValueError) as error:
                 raise NoNode(frame.inner.rule) from error
-            frame.above.append(DraftPart(frame.outline.rule, value, frame.first, frame.at))
+            frame.above.append(Part(frame.outline.rule, value, frame.first, frame.at))
     return plan.plan(top[0].value)
 
 
@@ -208,13 +203,13 @@ class _Frame:
     __slots__ = ("above", "at", "first", "inner", "outline", "parts", "place")
 
     def __init__(
-        self, outline: Outline, first: int, above: list[DraftPart], chains: frozenset[str]
+        self, outline: Outline, first: int, above: list[Part[Value]], chains: frozenset[str]
     ) -> None:
         self.outline = outline
         self.inner = _inner(outline, chains)
         self.first = self.at = first
         self.above = above
-        self.parts: list[DraftPart] = []
+        self.parts: list[Part[Value]] = []
         self.place = 0
 
 
@@ -243,40 +238,3 @@ def _getter(slots: list[int]) -> Callable[[list[Any]], Any]:
         return itemgetter(*slots)
     (only,) = slots
     return itemgetter(slice(only, only + 1))
-
-
-# -------------------------------------------------------------------------- choices from the parts
-
-
-def value_of(parts: Sequence[DraftPart], symbol: str) -> Value:
-    """Return the value of the first part of this kind, or ``None`` if there is none."""
-    return next((part.value for part in parts if part.symbol == symbol), None)
-
-
-def values_of(parts: Sequence[DraftPart], symbol: str) -> tuple[Value, ...]:
-    """Return the values of all parts of this kind, in order."""
-    return tuple(part.value for part in parts if part.symbol == symbol)
-
-
-def has(parts: Sequence[DraftPart], symbol: str) -> bool:
-    """Return whether there is a part of this kind."""
-    return any(part.symbol == symbol for part in parts)
-
-
-def after(parts: Sequence[DraftPart], symbol: str) -> Value:
-    """Return the value after a keyword and an equals sign; ``None`` without the keyword."""
-    for place, part in enumerate(parts):
-        if part.symbol == symbol:
-            return parts[place + 2].value
-    return None
-
-
-def separated(parts: Sequence[DraftPart]) -> tuple[Value, ...]:
-    """Return the values between commas, with ``None`` for a missing one."""
-    items: list[Value] = [None]
-    for part in parts:
-        if part.symbol == "COMMA":
-            items.append(None)
-        else:
-            items[-1] = part.value
-    return tuple(items)

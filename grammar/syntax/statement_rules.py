@@ -9,18 +9,19 @@ named after its node, such as ``waitFor`` for `WaitFor`, and has the fields in o
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import fields
 
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
 from grammar.syntax.expression_rules import EXPRESSION_RULES, literal, type_name
-from grammar.syntax.node_plans import Draft, DraftPart, Rule, Value, after, has, value_of, values_of
+from grammar.syntax.node_plans import Draft, Parts, Rule, Value, node
+from grammar.syntax.parts import after, at, each, flag, has, one, value_of, values_of
 
 # ----------------------------------------------------------------------------------- declarations
 
 
-def _declaration(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _declaration(draft: Draft, parts: Parts) -> Value:
     """Return a declaration with or without initial values; or an assignment in a data list."""
     first = parts[0]
     if first.symbol == "definition":
@@ -38,23 +39,7 @@ def _declaration(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     )
 
 
-def _enumeration(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    constants = values_of(parts, "enumerator")
-    return draft.over(
-        ast.Enumeration, parts, has(parts, "GLOBAL"), value_of(parts, "name"), constants
-    )
-
-
-def _structure(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    groups = values_of(parts, "memberGroup")
-    return draft.over(ast.Structure, parts, has(parts, "GLOBAL"), value_of(parts, "name"), groups)
-
-
-def _member_group(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    return draft.over(ast.MemberGroup, parts, parts[0].value, values_of(parts, "declarator"))
-
-
-def _signal(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _signal(draft: Draft, parts: Parts) -> Value:
     places = values_of(parts, "variable")
     if not places:
         places = (literal(draft, parts[-1:]),)
@@ -63,36 +48,18 @@ def _signal(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return draft.over(ast.Signal, parts, *flags, value_of(parts, "name"), first, last)
 
 
-def _external(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _external(draft: Draft, parts: Parts) -> Value:
     parameters = value_of(parts, "externalParameters") or ()
     result, name = type_name(draft, parts), value_of(parts, "name")
     return draft.over(ast.External, parts, parts[0].symbol, result, name, parameters)
 
 
-def _external_parameter(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    selected = (value_of(parts, symbol) for symbol in ("name", "index", "parameterMode"))
-    return draft.over(ast.ExternalParameter, parts, parts[0].value, *selected)
-
-
-def _parameter(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    selected = (value_of(parts, symbol) for symbol in ("index", "parameterMode"))
-    return draft.over(ast.Parameter, parts, parts[0].value, *selected)
-
-
-def _channel(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _channel(draft: Draft, parts: Parts) -> Value:
     name, interface = values_of(parts, "name")
     return draft.over(ast.ChannelDefinition, parts, name, interface, parts[-1].value)
 
 
-def _importation(draft: Draft, parts: Sequence[DraftPart]) -> Value:
-    selected = (value_of(parts, symbol) for symbol in ("type", "declarator"))
-    path = values_of(parts, "name")
-    return draft.over(
-        ast.Importation, parts, has(parts, "DECL"), *selected, path, value_of(parts, "variable")
-    )
-
-
-def _initialised_declarator(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _initialised_declarator(draft: Draft, parts: Parts) -> Value:
     if len(parts) == 1:
         return parts[0].value
     return draft.over(_with_value, parts, parts[0].value, parts[2].value)
@@ -105,18 +72,18 @@ def _with_value(span: Span, plain: ast.Declarator, value: ast.Expression) -> ast
 # ------------------------------------------------------------------------------------- statements
 
 
-def _statement(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _statement(draft: Draft, parts: Parts) -> Value:
     """Return the statement; a call is an expression too, and is wrapped in a statement here."""
     value = _only(draft, parts)
     return draft.over(ast.CallStatement, parts, value) if parts[0].symbol == "call" else value
 
 
-def _wait(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _wait(draft: Draft, parts: Parts) -> Value:
     kind = ast.WaitFor if parts[1].symbol == "FOR" else ast.WaitSeconds
     return draft.over(kind, parts, parts[2].value)
 
 
-def _cyclic_signal(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _cyclic_signal(draft: Draft, parts: Parts) -> Value:
     keyword = parts[0].symbol
     if parts[1].symbol == "OFF":
         return draft.over(ast.SignalOff, parts, keyword, parts[2].value)
@@ -124,11 +91,11 @@ def _cyclic_signal(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return draft.over(ast.SignalOn, parts, keyword, parts[2].value, *options)
 
 
-def _brake(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _brake(draft: Draft, parts: Parts) -> Value:
     return draft.over(ast.Brake, parts, parts[1].symbol if len(parts) > 1 else None)
 
 
-def _interrupt(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _interrupt(draft: Draft, parts: Parts) -> Value:
     expressions = values_of(parts, "expression")
     if has(parts, "DECL"):
         number, condition = expressions
@@ -138,21 +105,21 @@ def _interrupt(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     return draft.over(ast.InterruptSwitch, parts, parts[1].symbol, value_of(parts, "expression"))
 
 
-def _trigger(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _trigger(draft: Draft, parts: Parts) -> Value:
     place = value_of(parts, "place")
     assert isinstance(place, tuple)
     delay, action = after(parts, "DELAY"), value_of(parts, "triggerAction")
     return draft.over(ast.Trigger, parts, *place, delay, action, after(parts, "PRIO"))
 
 
-def _place(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _place(_draft: Draft, parts: Parts) -> Value:
     return parts[0].symbol, parts[2].value, has(parts, "ONSTART")
 
 
 # ---------------------------------------------------------------------------------------- motions
 
 
-def _motion(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _motion(draft: Draft, parts: Parts) -> Value:
     targets = values_of(parts, "target")
     criteria = value_of(parts, "approximation") or (("C_SPL",) if has(parts, "C_SPL") else ())
     return draft.over(
@@ -168,7 +135,7 @@ def _motion(draft: Draft, parts: Sequence[DraftPart]) -> Value:
     )
 
 
-def _spline_item(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _spline_item(draft: Draft, parts: Parts) -> Value:
     keyword, *rest = parts
     if not rest:
         return keyword.value
@@ -185,7 +152,7 @@ def _spline_item(draft: Draft, parts: Sequence[DraftPart]) -> Value:
 # --------------------------------------------------------------------------------- which for which
 
 
-def _only(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _only(_draft: Draft, parts: Parts) -> Value:
     """Return the value of the only child: the rule is a choice between rules."""
     (only,) = parts
     assert only.symbol[0].islower(), only.symbol
@@ -195,13 +162,13 @@ def _only(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
 def _all(symbol: str) -> Rule:
     """Return a function for a rule that is a list of ``symbol``."""
 
-    def rule(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
+    def rule(_draft: Draft, parts: Parts) -> Value:
         return values_of(parts, symbol)
 
     return rule
 
 
-def _symbol(_draft: Draft, parts: Sequence[DraftPart]) -> Value:
+def _symbol(_draft: Draft, parts: Parts) -> Value:
     """Return the keyword: the rule is a choice between keywords."""
     return parts[0].symbol
 
@@ -220,7 +187,7 @@ def _in_order(kind: type[ast.Node]) -> Rule:
     """
     count = len(fields(kind)) - 1
 
-    def rule(draft: Draft, parts: Sequence[DraftPart]) -> Value:
+    def rule(draft: Draft, parts: Parts) -> Value:
         values = [part.value for part in parts if part.symbol[0].islower()]
         assert len(values) <= count, values
         return draft.over(kind, parts, *values, *[None] * (count - len(values)))
@@ -237,21 +204,30 @@ RULES: Mapping[str, Rule] = {
     **{_rule_name(kind): _in_order(kind) for kind in ast.TEMPLATES},
     **EXPRESSION_RULES,
     "parameters": _all("parameter"),
-    "parameter": _parameter,
+    "parameter": node(ast.Parameter, at(0), one("index"), one("parameterMode")),
     "parameterMode": _symbol,
     "declaration": _declaration,
     "initialisation": _declaration,
     "definition": _only,
-    "enumeration": _enumeration,
+    "enumeration": node(ast.Enumeration, flag("GLOBAL"), one("name"), each("enumerator")),
     "enumerator": _only,
-    "structure": _structure,
-    "memberGroup": _member_group,
+    "structure": node(ast.Structure, flag("GLOBAL"), one("name"), each("memberGroup")),
+    "memberGroup": node(ast.MemberGroup, at(0), each("declarator")),
     "signal": _signal,
     "external": _external,
     "externalParameters": _all("externalParameter"),
-    "externalParameter": _external_parameter,
+    "externalParameter": node(
+        ast.ExternalParameter, at(0), one("name"), one("index"), one("parameterMode")
+    ),
     "channel": _channel,
-    "importation": _importation,
+    "importation": node(
+        ast.Importation,
+        flag("DECL"),
+        one("type"),
+        one("declarator"),
+        each("name"),
+        one("variable"),
+    ),
     "initialisedDeclarator": _initialised_declarator,
     "initialValue": _only,
     "simpleStatement": _statement,
