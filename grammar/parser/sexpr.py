@@ -25,14 +25,8 @@ _BRACKETS = frozenset("()[]{}")
 _SEPARATORS = frozenset(",.")
 _LINE_END = "NEWLINE"
 # an atom with blanks or parentheses is put in backquotes, which KRL does not have
-_ATOM = r"\"[^\"\n]*\"|`[^`\n]*`|[^\s()`\"]+"
-_LEXEME = re.compile(rf"\s*({_ATOM}|[()])")
 _PLAIN = re.compile(r"\"[^\"\n]*\"|[^\s()`\"]+")
 _WIDTH = 88
-
-
-class ExpressionError(Exception):
-    """The text is no S-expression; the message names the line."""
 
 
 class Shortener:
@@ -109,7 +103,7 @@ def _are_items(*children: ParseNode | Token | None) -> bool:
     )
 
 
-# ------------------------------------------------------------------------ as text and back
+# ------------------------------------------------------------------------------------ as text
 
 
 def write(expression: Expression, width: int = _WIDTH) -> str:
@@ -144,38 +138,3 @@ def _flat(expression: Expression) -> str:
     if isinstance(expression, str):
         return expression if _PLAIN.fullmatch(expression) else f"`{expression}`"
     return f"({' '.join(map(_flat, expression))})"
-
-
-def read(text: str) -> Expression:
-    """Return the expression that `write` wrote; raises `ExpressionError`."""
-    outer: list[list[Expression]] = []
-    current: list[Expression] = []
-    place = 0
-    while text[place:].strip():
-        found = _LEXEME.match(text, place)
-        if found is None:
-            place = len(text) - len(text[place:].lstrip())
-            raise ExpressionError(f"line {_line(text, place)}: a quote is not closed")
-        place = found.end()
-        match found[1]:
-            case "(":
-                outer.append(current)
-                current = []
-            case ")":
-                if not outer:
-                    raise ExpressionError(f"line {_line(text, place)}: ) without (")
-                if not current or not isinstance(current[0], str):
-                    raise ExpressionError(f"line {_line(text, place)}: a rule without a name")
-                inner, current = tuple(current), outer.pop()
-                current.append(inner)
-            case atom:
-                current.append(atom.strip("`"))
-    if outer:
-        raise ExpressionError(f"line {_line(text, place)}: ( without )")
-    if len(current) != 1:
-        raise ExpressionError("not one tree but " + str(len(current)))
-    return current[0]
-
-
-def _line(text: str, place: int) -> int:
-    return text.count("\n", 0, place) + 1

@@ -17,7 +17,7 @@ from grammar.notation.g4 import read as read_grammar
 from grammar.parser.coverage import GrammarCoverage
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
-from grammar.parser.sexpr import Expression, ExpressionError, Shortener, read, write
+from grammar.parser.sexpr import Expression, Shortener, write
 from grammar.parser.syntax_cases import CaseReader, SyntaxCase, SyntaxCaseError, main, read_cases
 from grammar.parser.tree import Tree
 
@@ -167,39 +167,6 @@ def test_long_trees_are_broken_into_lines() -> None:
     assert "(a\n  (b x)\n  STEP =\n  (c y)\n  (d z)\n  WITH 5)" == write(tree, 20)
 
 
-@pytest.mark.parametrize(
-    "tree",
-    [
-        "x",
-        ("a",),
-        ("a", ("b", ("c", "1", "+", "2"), '"a ) b"'), "{", "'H 1F'", "&x = (y)"),
-    ],
-)
-def test_what_is_written_is_read_back(tree: Expression) -> None:
-    """Reading gives back what was written, at any width."""
-    for width in (1, 10, 80):
-        assert tree == read(write(tree, width))
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("", "not one tree but 0"),
-        ("(a) (b)", "not one tree but 2"),
-        ("(a\n (b)", "line 2: ( without )"),
-        ("(a)\n)", "line 2: ) without ("),
-        ("(a ())", "line 1: a rule without a name"),
-        ("((a) b)", "line 1: a rule without a name"),
-        ('(a\n\n "b)', "line 3: a quote is not closed"),
-    ],
-)
-def test_what_is_no_tree(text: str, message: str) -> None:
-    """The message says what is wrong, and on which line."""
-    with pytest.raises(ExpressionError) as error:
-        read(text)
-    assert message == str(error.value)
-
-
 # ------------------------------------------------------------------------- files of cases
 
 GOOD = """\
@@ -260,22 +227,18 @@ def test_what_differs(reader: CaseReader) -> None:
     assert [None, None] == [reader.difference(one), reader.difference(two)]
     wrong = read_cases(GOOD.replace("(procedure A)", "(procedure  B)").replace("3:6", "3:5"))
     assert [
-        "found\n(procedure A)\nexpected\n(procedure B)",
+        "found\n(procedure A)\nexpected\n(procedure  B)",
         "found\n3:6 HALT\nexpected\n3:5 HALT",
     ] == [reader.difference(case) for case in wrong]
     swapped = read_cases(GOOD.replace("\n:error", "").replace("one\n", "one\n:error\n"))
     assert ["no error, but\n(procedure A)", "no program: 3:6 HALT"] == [
         reader.difference(case) for case in swapped
     ]
-    broken = read_cases(GOOD.replace("(procedure A)", "(procedure A"))
-    assert "the expectation is no tree (line 1: ( without )), found\n(procedure A)" == (
-        reader.difference(broken[0])
-    )
 
 
 def test_layout_makes_no_difference(reader: CaseReader) -> None:
-    """A tree may be laid out in any way, and updating leaves it so."""
-    text = GOOD.replace("(procedure A)", "( procedure\n\n    A )").replace("3:6 H", "3:6   H")
+    """A tree may be broken into lines anywhere, and updating leaves it so."""
+    text = GOOD.replace("(procedure A)", "(procedure\n\n    A)").replace("3:6 H", "3:6   H")
     assert [None, None] == [reader.difference(case) for case in read_cases(text)]
     assert text == reader.updated(text)
 
