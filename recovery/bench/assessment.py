@@ -6,7 +6,6 @@ import hashlib
 import random
 import statistics
 import time
-from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -370,41 +369,28 @@ def _ranks(assessment: Assessment, whole: Grammar) -> dict[str, Any]:
 
 
 def figures(assessments: Sequence[Assessment], negative_count: int) -> dict[str, Any]:
-    """Return the figures of a set of assessments."""
-    total = len(assessments)
+    """Return the figures of a set of assessments; ``None`` for what nothing tells."""
     seen = [v for v in assessments if v.detected]
-    ranks: dict[str, list[int | None]] = defaultdict(list)
-    for v in assessments:
-        ranks["rule"].append(v.rule_rank)
-        ranks["item"].append(v.item_rank)
-        ranks["repair"].append(v.repair_rank)
-
-    def share(name: str, within: int) -> float:
-        return round(sum(r is not None and r <= within for r in ranks[name]) / total, 4)
-
     tokens = [t for v in seen for t in v.reproducer_tokens]
-    return {
-        "mutants": total,
-        "detected": round(len(seen) / total, 4) if total else None,
-        **(
-            {
-                f"{name}_top{n}": share(name, n)
-                for name in ("rule", "item", "repair")
-                for n in (1, 5)
-            }
-            if total
-            else {}
-        ),
-        "clusters_per_cause": round(statistics.mean(v.clusters / v.mutant.parts for v in seen), 3)
-        if seen
-        else None,
-        "false_accept": round(
-            statistics.mean(v.false_accepts / max(1, negative_count) for v in seen), 5
-        )
-        if seen
-        else None,
-        "reproducer_median_tokens": statistics.median(tokens) if tokens else None,
-        "seconds_per_mutant": round(statistics.mean(v.seconds for v in assessments), 3)
-        if total
-        else None,
+    ranks = {
+        "rule": [v.rule_rank for v in assessments],
+        "item": [v.item_rank for v in assessments],
+        "repair": [v.repair_rank for v in assessments],
     }
+    return {
+        "mutants": len(assessments),
+        "detected": _mean([v.detected for v in assessments], 4),
+        **{
+            f"{name}_top{n}": _mean([rank is not None and rank <= n for rank in found], 4)
+            for name, found in ranks.items()
+            for n in (1, 5)
+        },
+        "clusters_per_cause": _mean([v.clusters / v.mutant.parts for v in seen], 3),
+        "false_accept": _mean([v.false_accepts / max(1, negative_count) for v in seen], 5),
+        "reproducer_median_tokens": statistics.median(tokens) if tokens else None,
+        "seconds_per_mutant": _mean([v.seconds for v in assessments], 3),
+    }
+
+
+def _mean(values: Sequence[float], digits: int) -> float | None:
+    return round(statistics.fmean(values), digits) if values else None
