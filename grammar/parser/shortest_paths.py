@@ -42,10 +42,6 @@ class Paths:
         ways = [[kind for position in frames for kind in self._out[position]] for frames in state]
         return min(ways, key=lambda way: (len(way), way))
 
-    def shortest(self, rule: str) -> list[int]:
-        """Return the shortest sentence of a rule."""
-        return list(self._out[self._network.entry[rule]])
-
     def _to_call(self, back: int, callee: int) -> _Way:
         """Return the path from the start of a rule to a call that returns to ``back``."""
         ways = self._ways_into(self._entry_of[back])

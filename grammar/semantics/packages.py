@@ -47,7 +47,6 @@ class PackageRoutine:
     has_more: bool
     default: str
     is_unconfirmed: bool
-    meaning: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +120,6 @@ def _routine(row: Mapping[str, str]) -> PackageRoutine:
         has_more="..." in written,
         default=row["default"],
         is_unconfirmed=row["source"] == "R",
-        meaning=row["meaning"],
     )
 
 

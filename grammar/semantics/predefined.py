@@ -176,10 +176,14 @@ class System:
     def __init__(self, release: Release | None) -> None:
         self.release = release
         self.channels: Mapping[str, str] = _Entries("channels", release, itemgetter("name"))
-        self._functions = _Entries("functions", release, self._function)
+        #: Functions and procedures that no file declares.
+        self.functions = _Entries("functions", release, self._function)
         self._messages = _Entries("messages", release, _message)
-        self._types = _Entries("types", release, self._type)
-        self._variables = _Entries("variables", release, self._variable)
+        #: Structures and enumerations; `UNKNOWN` if only the name is known. Those declared in a
+        #: delivered ``$config.dat`` are open: another file may add members.
+        self.types = _Entries("types", release, self._type)
+        #: Variables, including those of a delivered ``$config.dat`` (`SystemVariable.file`).
+        self.variables = _Entries("variables", release, self._variable)
 
     @staticmethod
     @cache
@@ -196,19 +200,6 @@ class System:
             raise ValueError(f"not a release such as 8.6: {release!r}")
         return System((int(found[1]), int(found[2])))
 
-    @property
-    def variables(self) -> Mapping[str, SystemVariable]:
-        """Variables, including those of a delivered ``$config.dat`` (`SystemVariable.file`)."""
-        return self._variables
-
-    @property
-    def types(self) -> Mapping[str, Type]:
-        """Structures and enumerations; `UNKNOWN` if only the name is known.
-
-        Those declared in a delivered ``$config.dat`` are open: another file may add members.
-        """
-        return self._types
-
     def is_described(self, type_: Type) -> bool:
         """Return whether the members of a type rest on a rule, not only on one release's tables.
 
@@ -216,15 +207,10 @@ class System:
         """
         if (
             not isinstance(type_, Structure | Enumeration)
-            or self._types.get(type_.name) is not type_
+            or self.types.get(type_.name) is not type_
         ):
             return True
-        return any(key in tiers() for key in self._types.cell(type_.name, "source").split())
-
-    @property
-    def functions(self) -> Mapping[str, PredefinedFunction]:
-        """Functions and procedures that no file declares."""
-        return self._functions
+        return any(key in tiers() for key in self.types.cell(str(type_), "source").split())
 
     def message(self, number: int) -> Message | None:
         """Return the message with a number, or ``None`` if it is unknown."""
@@ -233,7 +219,7 @@ class System:
     @property
     def messages(self) -> list[Message]:
         """All known messages, by number."""
-        return [self._messages[number] for number in self._messages]
+        return list(self._messages.values())
 
     # ----------------------------------------------------------------------- from the tables
 
@@ -241,7 +227,7 @@ class System:
         """Return the type with a name in a table; a question mark means that it is uncertain."""
         if name.startswith("?"):
             return UNKNOWN
-        return SCALARS[name] if name in SCALARS else self._types[name]
+        return SCALARS[name] if name in SCALARS else self.types[name]
 
     def _typed(self, name: str, sizes: str) -> Type:
         element = self._named(name)

@@ -48,15 +48,14 @@ class Comment:
 class Fold:
     """Lines that an editor shows as one.
 
-    ``first`` is the line of FOLD, ``last`` that of ENDFOLD, ``None`` if it is missing. ``level``
-    counts from 1. ``parameters`` are those of the teach pendant, on the line of FOLD and in the
-    ``Params`` line below, as written; ``None`` for folds of users.
+    ``first`` is the line of FOLD, ``last`` that of ENDFOLD, ``None`` if it is missing.
+    ``parameters`` are those of the teach pendant, on the line of FOLD and in the ``Params`` line
+    below, as written; ``None`` for folds of users.
     """
 
     title: str
     first: int
     last: int | None
-    level: int
     parameters: str | None
 
 
@@ -162,12 +161,11 @@ class Source:
 
         def fold(last: int | None) -> Fold:
             first, title = opened.pop()
-            level = len(opened) + 1
             shown, mark, hidden = _split(title)
             below = self.comment(first + 1)
             more = below.text if below and _PARAMETER_LINE.match(below.text) else ""
             parameters = f"{hidden}{more}" if mark or more else None
-            return Fold(shown.strip(), first, last, level, parameters)
+            return Fold(shown.strip(), first, last, parameters)
 
         for line, title in self._fold_marks():
             if title is not None:

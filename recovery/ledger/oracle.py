@@ -182,14 +182,9 @@ def reason_to_ask(construct: Construct) -> str:
 
 @dataclass(frozen=True, slots=True)
 class OracleVerdict:
-    """A construct with the verdict of an oracle.
-
-    ``unanswered`` is the number of its programs without an answer; ``findings`` are the differences
-    between oracle and ledger, one line each.
-    """
+    """A construct with the verdict of an oracle, and how it differs from the ledger, by lines."""
 
     construct: Construct
-    unanswered: int
     findings: tuple[str, ...]
 
 
@@ -217,4 +212,4 @@ def verdict_on(construct: Construct, oracle: Oracle) -> OracleVerdict:
         construct = replace(construct, evidence=evidence)
         if construct.state not in (ACCEPTED, REJECTED):
             construct = replace(construct, state=construct.earned_state)
-    return OracleVerdict(construct, sum(answer is None for _, answer in answers), tuple(findings))
+    return OracleVerdict(construct, tuple(findings))

@@ -31,20 +31,6 @@ def sentence_kinds(recognizer: Recognizer, chance: Random, size: int) -> list[in
 
 
 @pytest.mark.parametrize("name", OWN)
-def test_shortest_sentences_of_every_rule(name: str) -> None:
-    """The shortest sentence on the network is as short as the one derived from the rules."""
-    recognizer = OWN[name]
-    paths, sentences = Paths(recognizer.network), Sentences(recognizer.grammar)
-    for rule in recognizer.network.entry:
-        found = paths.shortest(rule)
-        length = len(found) - (rule == recognizer.grammar.start)  # its end of file counts here
-        assert len(sentences.shortest(rule)) == length
-        state, index = recognizer.run(recognizer.at_rule(rule), found)
-        assert index is None
-        assert recognizer.ends(state)
-
-
-@pytest.mark.parametrize("name", OWN)
 @given(chance=MANY)
 def test_into_a_configuration_and_out_again(name: str, chance: Random) -> None:
     """The prefix leads to a state with that configuration, and its completion ends a program."""

@@ -97,15 +97,15 @@ def test_comments_are_where_they_say(text: str) -> None:
 def test_folds_nest() -> None:
     """Folds come in the order of their first lines, each with its level."""
     assert [
-        Fold("a", 1, 6, 1, None),
-        Fold("b c", 2, 3, 2, None),
-        Fold("", 4, 5, 2, None),
+        Fold("a", 1, 6, None),
+        Fold("b c", 2, 3, None),
+        Fold("", 4, 5, None),
     ] == folds(";FOLD a", "; fold  b c ", " ;ENDFOLD (b)", ";FOLD", ";endfold", ";ENDFOLD")
 
 
 def test_folds_that_do_not_match() -> None:
     """A fold left open has no end; an ENDFOLD too many ends nothing."""
-    assert [Fold("a", 2, None, 1, None), Fold("b", 3, 4, 2, None)] == folds(
+    assert [Fold("a", 2, None, None), Fold("b", 3, 4, None)] == folds(
         ";ENDFOLD", ";FOLD a", ";FOLD b", ";ENDFOLD"
     )
 
@@ -117,9 +117,9 @@ def test_what_is_no_fold() -> None:
 
 def test_parameters_of_the_teach_pendant() -> None:
     """They begin behind a second semicolon, and may go on in the line below."""
-    assert [Fold("PTP P1", 1, 3, 1, "%{PE}%R 8.3,%V;PTP;Params A=1; B=2")] == folds(
+    assert [Fold("PTP P1", 1, 3, "%{PE}%R 8.3,%V;PTP;Params A=1; B=2")] == folds(
         ";FOLD PTP P1 ;%{PE}%R 8.3,%V;PTP", ";Params A=1; B=2", ";ENDFOLD"
     )
-    assert [Fold("INI", 1, 2, 1, "%{PE}")] == folds(";FOLD INI;%{PE}", ";ENDFOLD (INI)")
-    assert [Fold("", 1, 2, 1, "%{h}")] == folds(";FOLD;%{h}", ";ENDFOLD")
-    assert [Fold("a;b", 1, None, 1, None)] == folds(";FOLD a;b", "X=1 ", ";Params A=1")
+    assert [Fold("INI", 1, 2, "%{PE}")] == folds(";FOLD INI;%{PE}", ";ENDFOLD (INI)")
+    assert [Fold("", 1, 2, "%{h}")] == folds(";FOLD;%{h}", ";ENDFOLD")
+    assert [Fold("a;b", 1, None, None)] == folds(";FOLD a;b", "X=1 ", ";Params A=1")
