@@ -19,6 +19,7 @@ from conformance.evaluation.verdicts import KnownFailures
 from conformance.suite.case import CASES, ENDINGS, Case, CaseError, find_cases
 from conformance.suite.expectations import KINDS, Expectation, When
 from conformance.suite.registry import Clause, Rule, basis, corners, registry, searches, unconfirmed
+from conformance.unconfirmed_constructs import doubts
 from grammar.syntax.build import read_module
 from interp.controller.inputs.input_script import Script, ScriptError
 
@@ -73,16 +74,6 @@ _UNHEEDED: Final = re.compile(
 _FORMS: Final = {
     re.compile(r"^ *ENDSPLINE +C_", re.IGNORECASE | re.MULTILINE): "SPL-01.b alone has a criterion",
     re.compile(r"\bDO\b[^(;\n]*=[^;\n]*\bPRIO\b", re.IGNORECASE): "only a call has a priority",
-}
-#: What only a clause of recollection allows, by this clause.
-_DOUBTFUL: Final = {
-    "SCO-07.b": re.compile(r"(?:\(|, *)\w[\w.]*(?:\[\d+\]\.\w+)?\[[^\],]+,\]"),
-    "TYP-08.e": re.compile(
-        r"^ *(?:GLOBAL +)?STRUC +\w+ +(?:.*,)? *(?!CHAR\b)\w+ +(?:\w+(?:\[\d+\])?, *)*\w+\[",
-        re.IGNORECASE,
-    ),
-    "TYP-04.b": re.compile(r"'(?:[hb]|[HB][0-9A-F]*[a-f])"),
-    "TYP-18.c": re.compile(r'VARSTATE\("[^"]*\[\w|VARTYPE\("[^"]*[.\[]', re.IGNORECASE),
 }
 #: A wait for some time.
 _TIMED: Final = re.compile(r"\bWAIT +SEC +0*\.?0*[1-9]", re.IGNORECASE)
@@ -175,7 +166,7 @@ def _defects(case: Case) -> Iterator[str]:
     yield from _clause_defects(case)
     yield from _error_defects(case)
     yield from _refusals(case)
-    yield from _doubtful_lines(case)
+    yield from _doubts(case)
     yield from _periods(case)
     yield from _form_defects(case)
 
@@ -260,16 +251,11 @@ def _refusals(case: Case) -> Iterator[str]:
             yield f"{one.file}:{one.line}: {one.code} refuses what a controller has to take"
 
 
-def _doubtful_lines(case: Case) -> Iterator[str]:
-    """Yield that a hard expectation stands on a line, or behind it, that is not surely allowed."""
-    for source in case.sources:
-        for number, line in enumerate(source.text.splitlines(), start=1):
-            code = line.partition(";")[0]
-            for one, written in _DOUBTFUL.items():
-                if not written.search(code):
-                    continue
-                if any(map(case.is_sure, case.said_of(source.path, number, behind=True))):
-                    yield f"{source.path}:{number}: only {one} allows it, and it is not said so"
+def _doubts(case: Case) -> Iterator[str]:
+    """Yield that a hard expectation rests on what recollection alone gives, and does not say so."""
+    for one in doubts(case):
+        if one.concerns(case):
+            yield f"{one.file}:{one.line}: only {one.clause} allows it, and it is not said so"
 
 
 def _periods(case: Case) -> Iterator[str]:

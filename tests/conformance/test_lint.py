@@ -118,6 +118,29 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
         ("control/good.src", "  HALT", "STRUC S INT N, L[2]\n  HALT", "only TYP-08.e allows it"),
         ("control/good.src", "  HALT", "STRUC S CHAR A[2], B[3], INT N\n  HALT", ""),
         ("control/good.src", "HALT", "WORK(T[1,])\n  HALT", "good.src:5: only SCO-07.b allows it"),
+        (
+            *("control/good.src", "HALT ;> runs 1\nEND\n"),
+            "F()\n  HALT ;> runs 1\nEND\nDEFFCT INT F()\n  RETURN 1\nENDFCT\n",
+            "good.src:5: only CTL-09.b allows it",
+        ),
+        *(
+            ("control/good.src", "HALT ;> runs 1", told, part)
+            for told, part in (
+                ("INTERRUPT DECL 5 WHEN F(1) DO WORK() ;> runs 1", "only INT-06.c allows it"),
+                ("INTERRUPT DECL 5 WHEN NOT($IN[1]) DO good()\n  HALT ;> runs 1", ""),
+                ("ABS(1)\n  HALT ;> runs 1", "good.src:5: only CTL-09.b allows it"),
+                ("$TIMER[1] = ATAN2(, 1)\n  HALT ;> runs 1", "only SCO-13.d allows it"),
+                ("$BASE = {X 1}\n  HALT ;> runs 1", "only TYP-13.d allows it"),
+                ("$BASE = {X 1, Y 2, Z 3, A 4, B 5, C 6}\n  HALT ;> runs 1", ""),
+                ("SLIN {X 1} C_SPL ;> apex\n  SPTP {A1 1}", "good.src:5: only BLD-12 allows it"),
+                ("SLIN {X 1} C_SPL ;> apex\n  WAIT SEC 0\n  SPTP {A1 1}", ""),
+                ("LIN {X 1} C_DIS\n  LIN_REL {X 1} ;> pose 1 2 3", "good.src:6: only MOT-14.b"),
+                ("LIN {X 1} C_DIS\n  LIN_REL {X 1}\n  LIN {Y 1} ;> pose 1 2 3", "only MOT-14.b"),
+                ("LIN {X 1} C_DIS\n  LIN_REL {X 1}\n  LIN {X 1, Y 2, Z 3} ;> pose 1 2 3", ""),
+                ("LIN {X 1}\n  R = $POS_ACT.X ;> value R 1.0", "good.src:6: only ADV-07.b"),
+                ("LIN {X 1}\n  WAIT SEC 0\n  $TIMER[1] = $POS_ACT.X ;> value $TIMER[1] 1", ""),
+            )
+        ),
     ],
 )
 def test_faults_are_found(tmp_path: Path, name: str, old: str, new: str, part: str) -> None:
