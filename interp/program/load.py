@@ -83,11 +83,11 @@ class Unit:
 
     @cached_property
     def suppressing(self) -> frozenset[ast.Span]:
-        """The spans of each ON_ERROR_PROCEED with an effect [FCT-12]."""
+        """The spans of each ON_ERROR_PROCEED with an effect, or of CONTINUE behind it [FCT-12]."""
         nodes = walk(self.module.syntax) if self.module.syntax else ()
         lists = [body for node in nodes for body in bodies(node)]
         every = chain.from_iterable(suppressions(body, self.line) for body in lists)
-        return frozenset(node.span for node, _, has_effect in every if has_effect)
+        return frozenset(last.span for _, last, _, has_effect in every if has_effect)
 
     def found(self, name: ast.Name) -> Found | None:
         """Return what a name in this file refers to, or ``None`` if that is unknown."""

@@ -314,9 +314,14 @@ class Statements(Motions):
                 value = converted((yield from self.value(value, part.type)), part.type)
             parts.append(value)
         yield made.request(self.at(), *parts)
+        self._suppress(node)
 
     def _proceed(self, node: ast.OnErrorProceed) -> Steps[None]:
         yield requests.EmptyError(self.at())
+        self._suppress(node)
+
+    def _suppress(self, node: ast.Node) -> None:
+        """Suppress the error of the next statement, if this one says so [FCT-12]."""
         if node.span in self.frame.unit.suppressing:
             self.run.guard = Guard.NEXT
 

@@ -245,7 +245,7 @@ def _unreachable(context: Context, step: FlowNode, before: FlowNode | None) -> D
 def _not_suppressed(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     source = context.source
     statements = (placed.statement for placed in routine.statements)
-    for node, following, has_effect in suppressions(statements, partial(line_of, source)):
+    for node, _, following, has_effect in suppressions(statements, partial(line_of, source)):
         if has_effect:
             continue
         reason = "nothing on the next line can fail"

@@ -109,6 +109,10 @@ class Statements(CodeMaker):
 
     def _proceed(self, node: ast.OnErrorProceed, _end: Label) -> None:
         self._emitter.ask("EmptyError")
+        self._suppress(node)
+
+    def _suppress(self, node: ast.Node) -> None:
+        """Suppress the error of the next statement, if this one says so [FCT-12]."""
         if node.span in self._context.unit.suppressing:
             self._emit(Op.PROCEED)
 
@@ -135,6 +139,7 @@ class Statements(CodeMaker):
                 self._expressions.number(value, part.type)
                 parts.append(Input(Mode.IN, self._emitter.number(part.type)))
         self._emitter.ask(made.request.__name__, *parts)
+        self._suppress(node)
 
 
 _Rule = Callable[[Statements, Any, Label], None]
