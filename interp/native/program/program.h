@@ -40,7 +40,6 @@ struct krl_type {
     enum krl_form form;
     int32_t size;  /* in cells */
     int32_t count; /* number of constants, members or dimensions */
-    struct krl_text name;
     const struct krl_text *constants;
     const struct krl_member *members;
     int32_t element;
@@ -78,8 +77,6 @@ struct krl_part {
 struct krl_entry {
     struct krl_text name;
     int32_t result;
-    const struct krl_passed *inputs;
-    int32_t input_count;
     int32_t input_cells;
     const struct krl_part *parts;
     int32_t part_count;
@@ -88,7 +85,6 @@ struct krl_entry {
 /* A parameter or local variable, with its first cell in the frame and its size in cells. */
 struct krl_slot {
     struct krl_passed passed; /* a local has the mode of a parameter :IN */
-    int is_local;
     int32_t offset;
     int32_t cells;
 };
@@ -119,22 +115,11 @@ struct krl_value {
     krl_cell cell;
 };
 
-struct krl_variable {
-    int32_t type;
-    int32_t address;
-};
-
 struct krl_program {
     struct krl_type *types;
-    int32_t type_count;
     struct krl_letters *texts;
-    int32_t text_count;
     struct krl_entry *asks;
-    int32_t ask_count;
     struct krl_entry *builtins;
-    int32_t builtin_count;
-    struct krl_variable *data;
-    int32_t data_count;
     int32_t data_cells;
     struct krl_value *initial;
     int32_t initial_count;
