@@ -171,7 +171,7 @@ def _result(result: Result, *, is_first: bool) -> dict[str, Any]:
             }
             for check in result.checks
         ],
-        "divergence": None if result.divergence is None else result.divergence.record(),
+        "divergence": None if result.divergence is None else asdict(result.divergence),
     }
     if result.observation is not None:
         is_whole = is_first or result.verdict == "fail"

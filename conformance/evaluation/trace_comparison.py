@@ -32,15 +32,6 @@ class Side:
     variables: dict[str, Any]
     outputs: dict[str, Any]
 
-    def record(self) -> dict[str, Any]:
-        """Return it as JSON."""
-        return {
-            "name": self.name,
-            "event": self.event,
-            "variables": self.variables,
-            "outputs": self.outputs,
-        }
-
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
@@ -55,17 +46,6 @@ class Divergence:
     before: tuple[dict[str, Any], ...]
     left: Side
     right: Side
-
-    def record(self) -> dict[str, Any]:
-        """Return it as JSON."""
-        return {
-            "place": self.place,
-            "file": self.file,
-            "line": self.line,
-            "before": list(self.before),
-            "left": self.left.record(),
-            "right": self.right.record(),
-        }
 
     def __str__(self) -> str:
         left, right = self.left, self.right

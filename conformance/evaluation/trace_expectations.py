@@ -12,7 +12,7 @@ import numpy as np
 
 from conformance.evaluation.observation import Event, Observation
 from conformance.evaluation.path_geometry import around, between
-from conformance.suite.expectations import Anchor, Expectation, When
+from conformance.suite.expectations import KINDS, Anchor, Expectation, When
 from interp.robot.simulation.tracking import PathRecord
 
 #: The state of an expectation, and what was observed.
@@ -27,52 +27,22 @@ class Marks:
     ordered: frozenset[tuple[str, int]]
 
 
-#: The event of the trace for each word of an expectation.
-_EVENTS: Final[Mapping[str, str]] = {
-    "start": "motion_start",
-    "end": "motion_end",
-    "blend-start": "blend_start",
-    "apex": "blend_apex",
-    "blend-end": "blend_end",
-    "planned": "motion_planned",
-    "brake": "brake",
-    "resume": "resume",
-    "halt": "halt",
-    "line": "line",
-    "trigger": "trigger",
-    "ends": "end",
-}
 #: Relative tolerance: single precision has about seven digits [TYP-02].
 _REAL: Final = 1e-6
 #: Tolerance for "exactly" in µs: times are whole µs and were rounded once or twice.
 _EXACTLY: Final = 2
 
 
-#: The kind of event that an expectation needs, in addition to `_EVENTS`.
-_NEEDS: Final[Mapping[str, str]] = {
-    "value": "assign",
-    "values": "assign",
-    "runs": "line",
-    "never": "line",
-    "order": "line",
-    "mark": "line",
-    "stops": "advance_stop",
-    "runs-ahead": "advance_stop",
-    "blends": "blend_start",
-    "exact": "blend_start",
-    "lasts": "motion_end",
-    "interrupt": "interrupt_enter",
-    "calls": "call",
-    "ends": "end",
-}
-
-
 def unwatched(one: Expectation, seen: Observation) -> str:
     """Return the kind of event that a recording lacks for an expectation; "" if it has it."""
     if seen.watched is None or one.arguments == ("on",):
         return ""
-    kind = _NEEDS.get(one.kind) or _EVENTS.get(one.kind) or one.kind
+    kind = _event_of(one.kind)
     return "" if kind in seen.watched or one.needs != "none" else kind
+
+
+def _event_of(kind: str) -> str:
+    return KINDS[kind].event or kind
 
 
 def evaluate_on_trace(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
@@ -264,13 +234,10 @@ def _event(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
 
 
 def _events(one: Expectation, seen: Observation) -> list[Event]:
-    fits = _FITS.get(one.kind)
-    if fits is not None:
-        kind, test = fits
-        if one.kind == "interrupt":
-            return [event for event in seen.of_kind(kind) if test(one, event)]
-        return [event for event in seen.on_line(one.file, one.line, kind) if test(one, event)]
-    return seen.on_line(one.file, one.line, _EVENTS[one.kind])
+    kind, fits = _event_of(one.kind), _FITS.get(one.kind)
+    is_anywhere = one.kind == "interrupt"
+    there = seen.of_kind(kind) if is_anywhere else seen.on_line(one.file, one.line, kind)
+    return [event for event in there if fits is None or fits(one, event)]
 
 
 def _near(
@@ -321,12 +288,12 @@ def _has_priority(one: Expectation, event: Event) -> bool:
     return event.fields.get("priority") == int(one.arguments[0])
 
 
-_FITS: Final[Mapping[str, tuple[str, Callable[[Expectation, Event], bool]]]] = {
-    "out": ("out", _is_output),
-    "anout": ("anout", _is_analog),
-    "message": ("message", _is_message),
-    "calls": ("call", _is_called),
-    "interrupt": ("interrupt_enter", _has_priority),
+_FITS: Final[Mapping[str, Callable[[Expectation, Event], bool]]] = {
+    "out": _is_output,
+    "anout": _is_analog,
+    "message": _is_message,
+    "calls": _is_called,
+    "interrupt": _has_priority,
 }
 
 
@@ -364,7 +331,7 @@ def time_of(anchor: Anchor, seen: Observation, marks: Marks) -> int:
             events = [e for e in seen.of_kind(anchor.event) if e.fields.get("number") == number]
         case _:
             number = int(anchor.of)
-            kind = _EVENTS[anchor.event]
+            kind = _event_of(anchor.event)
             events = [e for e in seen.of_kind(kind) if e.fields.get("motion") == number]
     if not events or events[0].time is None:
         raise LookupError(f"there was no {anchor.event} {anchor.of}")

@@ -27,7 +27,8 @@ class Kind:
 
     ``form`` is the syntax of its arguments, a regular expression over the words joined by blanks.
     ``timed`` allows a time after them, ``tolerant`` a tolerance. ``robot`` is the simplest robot
-    that can evaluate the expectation.
+    that can evaluate the expectation. ``event`` is the kind of event in a trace that it is about;
+    without one, that has the same word.
     """
 
     word: str
@@ -36,6 +37,7 @@ class Kind:
     timed: bool = False
     tolerant: bool = False
     robot: Literal["none", "kinematic", "mujoco"] = "none"
+    event: str = ""
 
 
 _NUMBER: Final = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
@@ -62,38 +64,38 @@ def _kinds() -> Mapping[str, Kind]:
         Kind("note", ("check",), r"(?:KSS|KRL)\d+"),
         Kind("silent", ("check",), r"(?:KSS|KRL)\d+"),
         # which way a program goes, and what it computes
-        Kind("value", _RUN, rf"{_NAME} {_VALUE}", tolerant=True),
-        Kind("values", _RUN, rf"{_NAME} {_VALUE}(?: {_VALUE})*", tolerant=True),
-        Kind("runs", _RUN, r"(?:\d+|on)"),
-        Kind("never", _RUN),
-        Kind("order", _RUN, r"\d+(?: \d+)*"),
+        Kind("value", _RUN, rf"{_NAME} {_VALUE}", tolerant=True, event="assign"),
+        Kind("values", _RUN, rf"{_NAME} {_VALUE}(?: {_VALUE})*", tolerant=True, event="assign"),
+        Kind("runs", _RUN, r"(?:\d+|on)", event="line"),
+        Kind("never", _RUN, event="line"),
+        Kind("order", _RUN, r"\d+(?: \d+)*", event="line"),
         Kind("fault", _RUN, r"\w+"),
-        Kind("mark", _RUN, r"[A-Z]\w*"),
+        Kind("mark", _RUN, r"[A-Z]\w*", event="line"),
         # the advance run
-        Kind("stops", _RUN, "advance"),
-        Kind("runs-ahead", _RUN),
+        Kind("stops", _RUN, "advance", event="advance_stop"),
+        Kind("runs-ahead", _RUN, event="advance_stop"),
         # what happens in the cell, and when
         Kind("out", _RUN, r"\d+ (?:(?:TRUE|FALSE)(?: never)?|never)", timed=True),
         Kind("anout", _RUN, rf"\d+ {_NUMBER}", timed=True, tolerant=True),
         Kind("message", _RUN, r"(?:\d+|\"[^\"]*\")(?: never)?", timed=True),
-        Kind("interrupt", _RUN, r"\d+(?: never| times \d+)?", timed=True),
+        Kind("interrupt", _RUN, r"\d+(?: never| times \d+)?", timed=True, event="interrupt_enter"),
         Kind("trigger", _RUN, r"(?:never|times \d+)?", timed=True),
         Kind("brake", _RUN, timed=True),
         Kind("resume", _RUN, timed=True),
         Kind("halt", _RUN, timed=True),
         Kind("line", _RUN, timed=True),
-        Kind("calls", _RUN, r"\w+(?: never| times \d+)?", timed=True),
-        Kind("ends", _RUN, timed=True),
+        Kind("calls", _RUN, r"\w+(?: never| times \d+)?", timed=True, event="call"),
+        Kind("ends", _RUN, timed=True, event="end"),
         # the motion of a line
-        Kind("planned", _RUN, timed=True),
-        Kind("start", _RUN, timed=True),
-        Kind("end", _RUN, timed=True),
-        Kind("blend-start", _RUN, timed=True),
-        Kind("apex", _RUN, timed=True),
-        Kind("blend-end", _RUN, timed=True),
-        Kind("blends", _RUN),
-        Kind("exact", _RUN),
-        Kind("lasts", _RUN, _NUMBER, tolerant=True),
+        Kind("planned", _RUN, timed=True, event="motion_planned"),
+        Kind("start", _RUN, timed=True, event="motion_start"),
+        Kind("end", _RUN, timed=True, event="motion_end"),
+        Kind("blend-start", _RUN, timed=True, event="blend_start"),
+        Kind("apex", _RUN, timed=True, event="blend_apex"),
+        Kind("blend-end", _RUN, timed=True, event="blend_end"),
+        Kind("blends", _RUN, event="blend_start"),
+        Kind("exact", _RUN, event="blend_start"),
+        Kind("lasts", _RUN, _NUMBER, tolerant=True, event="motion_end"),
         # the path of a line's motion
         Kind("path", _RUN, _SHAPE, tolerant=True, robot="kinematic"),
         Kind("passes", _RUN, _POINT, tolerant=True, robot="kinematic"),
