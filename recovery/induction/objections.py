@@ -59,7 +59,7 @@ class EditReview:
         wider = edited(self.recognizer, alone)
         if wider is None:
             return "does not fit the grammar"
-        accepted = [n for n in self.rejected.accepted(wider) if self._is_read_anew(wider, n)]
+        accepted = self.newly_accepted(wider)
         if len(accepted) > gain / GAIN_PER_NEGATIVE:
             return f"accepts {len(accepted)} programs that must be rejected: {accepted[0].reason}"
         if most_damaged < math.inf:
@@ -67,6 +67,10 @@ class EditReview:
             if len(damaged) > most_damaged:
                 return f"accepts {len(damaged)} lines that have lost or doubled a token"
         return ""
+
+    def newly_accepted(self, wider: Recognizer) -> list[Negative]:
+        """Return the negatives that a wider grammar accepts and whose wrong line could be read."""
+        return [n for n in self.rejected.accepted(wider) if self._is_read_anew(wider, n)]
 
     @cached_property
     def _read_so_far(self) -> frozenset[tuple[int, int, int, bool]]:

@@ -45,6 +45,7 @@ from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names, with_operands
 from recovery.induction.objections import EditReview
+from recovery.induction.open_classes import OPENINGS, is_open
 from recovery.induction.shown_files import Failures, ShownFiles, reading
 from recovery.induction.steps import (
     AcceptedStep,
@@ -75,9 +76,10 @@ from recovery.tuning import (
     UNBOUNDED_SYMBOLS,
 )
 
-#: What a round looks for: what is missing within lines, whole lines and blocks, what is alike.
-_Step = Literal["inner", "outer", "fold"]
-_STEPS: tuple[_Step, ...] = get_args(_Step)
+#: What a round looks for: what is missing within lines, whole lines and blocks, what is alike, and
+#: once at the end what may be new elsewhere.
+_Step = Literal["inner", "outer", "fold", "open"]
+*_STEPS, _END = get_args(_Step)
 
 #: Edits whose place another edit of the same rule may move.
 _Placed = Insert | Widen | MakeOptional | Replace
@@ -127,12 +129,14 @@ class Induction:
         # what recurs in one origin only comes later, and last what recurs in one file only
         trusts = dict.fromkeys([(self.least_origins, LEAST_FILES_ALONE), (1, LEAST_FILES_ALONE)])
         stages = [(step, least) for least in (*trusts, (1, 1)) for step in _STEPS]
+        stages.append((_END, (1, 1)))
         place = 0
         for _ in range(most):
             step, least = stages[place]
             done = self._round(step, least)
             yield done
-            place = stages.index((_STEPS[0], least)) if done.taken else place + 1
+            again = place if step == _END else stages.index((_STEPS[0], least))
+            place = again if done.taken else place + 1
             if place == len(stages):
                 self.is_finished = True
                 return
@@ -150,6 +154,8 @@ class Induction:
         review = self._review
         if step == "fold":
             taken, refused = self._folded(review, failures, is_last=least == (1, 1))
+        elif step == "open":
+            taken, refused = self._opened(review)
         else:
             taken, refused = self._inferred(review, finder, failures, least, inner=step == "inner")
         grammar = apply(self.grammar, joined(taken))
@@ -331,9 +337,7 @@ class Induction:
         """
         before = review
         recognizer, files = review.recognizer, self.shown.files
-        reader, kinds = SymbolReader(OperandRules(recognizer)), recognizer.lexer.kinds
-        lines = CorpusLines(files, recognizer.lexer).lines
-        operands = operands_of(reader.symbols([(kinds[w], None) for w in line]) for line in lines)
+        operands = _operands(recognizer, CorpusLines(files, recognizer.lexer))
         taken: list[AcceptedStep] = []
         refused: dict[str, RefusedStep] = {}
         had = {recognizer.grammar.sha256}
@@ -373,6 +377,27 @@ class Induction:
             ]
             taken, lost = self.shown.kept(self.grammar, bounds, self._names)
         return taken, [*lost, *refused.values()]
+
+    def _opened(self, review: EditReview) -> tuple[list[AcceptedStep], list[RefusedStep]]:
+        """Return openings that accept no negative and lose no line, and others."""
+        grammar, lexer = self.grammar, review.recognizer.lexer
+        corpus = CorpusLines(self.shown.files, lexer)
+        operands = _operands(review.recognizer, corpus)
+        taken: list[AcceptedStep] = []
+        refused: list[RefusedStep] = []
+        for kind in OPENINGS if is_open(lexer, corpus) else ():
+            for found in kind(GrammarView(Recognizer(grammar), operands)):
+                wider = apply(grammar, found.edits)
+                if found.edits in self.struck:
+                    continue
+                if accepted := review.newly_accepted(Recognizer(wider)):
+                    reason = f"accepts a program that must be rejected: {accepted[0].reason}"
+                    refused.append(RefusedStep(found.title, found.edits, 0.0, reason))
+                else:
+                    taken.append(AcceptedStep(found.title, found.edits))
+                    grammar = wider
+        kept, lost = self.shown.kept(self.grammar, taken, self._names)
+        return kept, [*lost, *refused]
 
     def _may_restate(self, grammar: Grammar, edits: Sequence[Edit]) -> bool:
         """Return whether edits join alternatives only where lines fail or steps have changed some.
@@ -441,7 +466,8 @@ class Induction:
         origins = frozenset[str]().union(*(self.shown.files[place].origins for place in places))
         if len(origins) < least[0] or len(places) < least[1] or edits in self.struck:
             return None
-        evidence = Evidence(len(places), len(origins), len(seen), seen=seen[:PLACES_SHOWN])
+        lines = max(len(places), len(seen))  # each file has one, and each text is one
+        evidence = Evidence(len(places), len(origins), lines, seen=seen[:PLACES_SHOWN])
         kept, _ = self.shown.kept(self.grammar, [AcceptedStep(title, edits, evidence)], None)
         if not kept:
             return None
@@ -470,6 +496,13 @@ def _narrower(review: EditReview, fold: InferredStep, had: Set[str]) -> Recogniz
     if not all(map(narrower.accepts, review.texts)):
         return "loses lines that can be read"
     return narrower
+
+
+def _operands(recognizer: Recognizer, corpus: CorpusLines) -> list[tuple[int, ...]]:
+    """Return the distinct operands of a corpus, as kinds of token."""
+    reader, kinds = SymbolReader(OperandRules(recognizer)), recognizer.lexer.kinds
+    lines = (reader.symbols([(kinds[word], None) for word in line]) for line in corpus.lines)
+    return operands_of(lines)
 
 
 def _size(edit: Edit) -> int:

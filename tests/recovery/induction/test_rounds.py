@@ -359,6 +359,14 @@ def test_a_literal_of_one_origin(toy: Grammar) -> None:
     assert Recognizer(_grown(toy, files).grammar).accepts("Y := 2E7\n")
 
 
+def test_each_file_with_a_literal_has_a_line(toy: Grammar) -> None:
+    """The same literal in two origins is evidence that a ledger can hold."""
+    texts = {"one": "X := 15E3\n", "two": "Y := 15E3\n"}
+    files = tuple(CorpusFile(f"{o}/a.toy", t, frozenset({o})) for o, t in texts.items())
+    (step,) = (c for c in _grown(toy, files).constructs if c.title == "15E3 is one literal")
+    assert (2, 2, 2) == (step.evidence.files, step.evidence.origins, step.evidence.lines)
+
+
 def test_a_reserved_word_is_a_type(toy: Grammar) -> None:
     """Where one is expected, ahead of a name: not only in the form that shows it."""
     start = _with(
@@ -716,7 +724,7 @@ def test_folds_come_to_an_end(toy: Grammar, monkeypatch: pytest.MonkeyPatch) -> 
     """Without end a fold could be taken that leads back to a grammar of the same round."""
     monkeypatch.setattr(folding, "FOLDS", (_rotation,))
     files = tuple(CorpusFile(n, f"{n} := 1\nHALT\n", frozenset({n})) for n in "AB")
-    last = _grown(toy, files, begun=_with(toy, "    | halt\n", "")).rounds[-1]["refused"]
+    last = _grown(toy, files, begun=_with(toy, "    | halt\n", "")).rounds[-2]["refused"]
     assert ["has been so before"] == [refused["reason"] for refused in last]
 
 
