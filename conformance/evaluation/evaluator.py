@@ -260,7 +260,8 @@ def _unexpected_outputs(case: Case, seen: Observation) -> Iterator[Check]:
 def _unexpected_ending(case: Case, seen: Observation) -> Iterator[Check]:
     """Yield a check if the program ends otherwise; it is as sure as what says how it ends.
 
-    Where nothing says so, what is expected at the line at which it ends says that it goes on there.
+    Where nothing says so, what is expected at the line at which it ends says that it goes on there;
+    a message does not say that, but what is expected behind it.
     """
     causes = expected_ending(case.expectations)[1]
     for check in evaluate_ending(case.expectations, seen, case.main):
@@ -268,6 +269,8 @@ def _unexpected_ending(case: Case, seen: Observation) -> Iterator[Check]:
             yield check
         else:
             said = case.said_of(check.file, check.line, behind=seen.watched is not None)
+            if said and all(one.kind == "message" and not one.is_absence for one in said):
+                said = case.said_of(check.file, check.line + 1, behind=True)
             yield _resting_on(causes or said, case, check)
 
 

@@ -183,6 +183,15 @@ def test_what_only_a_doubtful_clause_allows_may_end_the_program() -> None:
         assert [is_sure] == [one.is_sure for one in found if one.state == "unmet"]
 
 
+def test_whether_a_message_ends_the_program_is_as_sure_as_what_stands_behind_it() -> None:
+    """That it is told at a line does not say that the program goes on there."""
+    for text, is_sure in (("runs 1 [ARI-12]", False), ("runs 1", True)):
+        asked = case("message 2936", more={5: text})
+        events = event("message", number=2936), event("fault")
+        found = evaluate(asked, Observation(events=events, ending="fault"))
+        assert [is_sure] == [one.is_sure for one in found if one.text.endswith("with: end")]
+
+
 def test_what_a_controller_refused_for_a_doubtful_clause_hides_the_rest() -> None:
     """Of a line without a word the next says whether it is possible; what was begun still counts.
 
