@@ -76,7 +76,9 @@ def characters(line: str, units: int) -> int:
 
 def _units(line: str, characters: int) -> int:
     """Return the number of UTF-16 code units in the first ``characters`` of a line."""
-    return sum(1 + (ord(character) > 0xFFFF) for character in line[:characters])
+    if line.isascii():
+        return min(characters, len(line))
+    return len(line[:characters].encode("utf-16-le", "surrogatepass")) // 2
 
 
 def _position(source: Source, line: int, column: int) -> lsp.Position:
