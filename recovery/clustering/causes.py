@@ -22,6 +22,7 @@ from functools import partial
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.recognizer import Recognizer
+from recovery import tuning
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
 from recovery.clustering.completion import added_alternatives, completed
 from recovery.clustering.edit_merging import (
@@ -39,14 +40,6 @@ from recovery.clustering.search import CauseSearch
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.grammar_profile import GrammarProfile
-from recovery.tuning import (
-    CAUSES_PER_GROUP,
-    FORM_SYMBOLS,
-    HEAVY_GROUPS,
-    MOST_CAUSES_COMPLETED,
-    MOST_COMPARED,
-    MOST_PROPOSALS,
-)
 from support.gc_pause import gc_paused
 from support.parallel.progress import Progress, no_progress
 
@@ -72,20 +65,20 @@ def find_causes(
     causes: list[Cause] = []
     with gc_paused():
         for place, group in enumerate(groups):
-            search.is_thorough = place < HEAVY_GROUPS
+            search.is_thorough = place < tuning.HEAVY_GROUPS
             causes += _of_group(search, group)
             on_done(1)
         causes = merged_by_first_word(search, causes)
     causes = merged_by_reason(search, merged_by_edits(search, causes), reasons)
-    more = completed if len(causes) <= MOST_CAUSES_COMPLETED else with_more_places
+    more = completed if len(causes) <= tuning.MOST_CAUSES_COMPLETED else with_more_places
     causes = [more(search, cause) for cause in causes]
-    return [replace(cause, proposals=cause.proposals[:MOST_PROPOSALS]) for cause in causes]
+    return [replace(cause, proposals=cause.proposals[: tuning.MOST_PROPOSALS]) for cause in causes]
 
 
 def _of_group(search: CauseSearch, group: Sequence[int]) -> Iterator[Cause]:
     """Yield the causes of a group; lines for which no edit is found form a cause of their own."""
     left = [n for n in group if n in search.open]
-    for _ in range(CAUSES_PER_GROUP):
+    for _ in range(tuning.CAUSES_PER_GROUP):
         cause = search.best_for(left) if left else None
         if cause is None:
             break
@@ -109,7 +102,7 @@ def merged_by_first_word(search: CauseSearch, causes: Sequence[Cause]) -> list[C
     tried.
     """
     led: dict[str, list[Cause]] = defaultdict(list)
-    for cause in causes[:MOST_COMPARED]:
+    for cause in causes[: tuning.MOST_COMPARED]:
         leads = {search.lead(search.lines[n]) for n in cause.lines} if cause.proposals else set()
         if len(leads) == 1:
             led[leads.pop()].append(cause)
@@ -214,7 +207,7 @@ def merged_by_edits(search: CauseSearch, causes: Sequence[Cause]) -> list[Cause]
     """Return the causes; those whose edits are one change in several places are merged."""
     out: list[Cause] = []
     for cause in causes:
-        for place, other in enumerate(out[:MOST_COMPARED] if cause.proposals else ()):
+        for place, other in enumerate(out[: tuning.MOST_COMPARED] if cause.proposals else ()):
             one = _as_one(search, other, cause) if other.proposals else None
             if one is not None:
                 out[place] = one
@@ -238,7 +231,7 @@ def _as_one(search: CauseSearch, first: Cause, second: Cause) -> Cause | None:
         both = search.proposal(edits, breadth)
         if both.accepts_negatives <= negatives:
             others = (p for p in first.proposals if p.edits != both.edits)
-            return Cause(lines, (both, *others)[:MOST_PROPOSALS])
+            return Cause(lines, (both, *others)[: tuning.MOST_PROPOSALS])
     return None
 
 
@@ -265,5 +258,5 @@ def _may_be_chosen(profile: GrammarProfile, edit: Edit, place: int) -> bool:
     """
     if not isinstance(edit, AddAlternative) or place > 0:
         return True
-    is_form = len(edit.text.split(" ")) >= FORM_SYMBOLS
+    is_form = len(edit.text.split(" ")) >= tuning.FORM_SYMBOLS
     return is_form or profile.vocabulary.is_set_of_words(edit.rule)

@@ -28,6 +28,7 @@ from grammar.notation.model import Grammar
 from grammar.parser.failures import Form
 from grammar.parser.network import network_of
 from grammar.parser.recognizer import Recognizer
+from recovery import tuning
 from recovery.clustering.cause import Cause, Proposal, no_negatives
 from recovery.clustering.edit_merging import combined_edits, merged_as_choice
 from recovery.clustering.edit_trial import changed_rules
@@ -35,13 +36,6 @@ from recovery.clustering.search import CauseSearch
 from recovery.forms.parts import choices
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.edit_site import LinePattern
-from recovery.tuning import (
-    LEAST_COMPLETED,
-    MOST_COMPLETED,
-    MOST_COMPLETIONS,
-    MOST_GROUPS_COMPLETED,
-    NEARLY_ALL,
-)
 
 
 def completed(search: CauseSearch, cause: Cause) -> Cause:
@@ -55,10 +49,10 @@ def completed(search: CauseSearch, cause: Cause) -> Cause:
         starts.setdefault(changed_rules(proposal.edits), proposal)
     rules = frozenset[str]().union(*starts)
     whole = {}
-    for proposal in islice(starts.values(), MOST_COMPLETED):
-        if _share(search, proposal, cause.lines) >= LEAST_COMPLETED:
+    for proposal in islice(starts.values(), tuning.MOST_COMPLETED):
+        if _share(search, proposal, cause.lines) >= tuning.LEAST_COMPLETED:
             more = _with_more(search, proposal, cause.lines, rules)
-            if _share(search, more, cause.lines) >= NEARLY_ALL:
+            if _share(search, more, cause.lines) >= tuning.NEARLY_ALL:
                 whole[proposal] = as_one_rule(search, more)
     found = list(dict.fromkeys(whole.get(proposal, proposal) for proposal in cause.proposals))
     if found != list(cause.proposals):
@@ -111,7 +105,7 @@ def _with_more(
     """
     wanted = frozenset(lines)
     share = partial(search.readable_share, lines=sorted(wanted))
-    for _ in range(MOST_COMPLETIONS):
+    for _ in range(tuning.MOST_COMPLETIONS):
         for more in _further(search, proposal, wanted, rules):
             is_safe = more.accepts_negatives <= proposal.accepts_negatives
             is_more = more.mended & wanted > proposal.mended & wanted
@@ -149,7 +143,7 @@ def _further(
         groups[search.lead(line), line.words()[line.form.index]].append(number)
     heaviest = sorted(groups.values(), key=lambda g: (-sum(inner.weights[n] for n in g), g))
     own = changed_rules(proposal.edits)
-    for some, group in product((own, rules), heaviest[:MOST_GROUPS_COMPLETED]):
+    for some, group in product((own, rules), heaviest[: tuning.MOST_GROUPS_COMPLETED]):
         cause = inner.best_for(group, partial(_are_of, some))
         for further in cause.proposals if cause else ():
             edits = continued(grammar, proposal.edits, further.edits)

@@ -20,15 +20,9 @@ from grammar.parser.lexer import Lexer
 from grammar.parser.network import is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Frames, Recognizer, State
 from grammar.parser.shortest_paths import Paths
+from recovery import tuning
 from recovery.clustering.joint_trial import DetourReader, Path
 from recovery.proposals.edit_site import LinePattern
-from recovery.tuning import (
-    LINES_READ_TWICE,
-    MOST_ANSWERS_KEPT,
-    MOST_CONFIGURATIONS_KEPT,
-    MOST_CONFIGURATIONS_TRIED,
-    MOST_RECOGNIZERS_KEPT,
-)
 from support.gc_pause import gc_paused
 
 
@@ -69,7 +63,7 @@ def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
     if is_left_recursive(network):
         return None
     found = Recognizer(grammar, network)
-    found.most_ways = MOST_CONFIGURATIONS_TRIED
+    found.most_ways = tuning.MOST_CONFIGURATIONS_TRIED
     return found
 
 
@@ -170,7 +164,10 @@ class EditTrial:
     def _forget_some(self) -> None:
         """Drop the least recently used recognisers, by number and by total size."""
         size = sum(kept.configurations for kept in self._wider.values() if kept is not None)
-        while len(self._wider) >= MOST_RECOGNIZERS_KEPT or size > MOST_CONFIGURATIONS_KEPT:
+        while (
+            len(self._wider) >= tuning.MOST_RECOGNIZERS_KEPT
+            or size > tuning.MOST_CONFIGURATIONS_KEPT
+        ):
             oldest = self._wider.pop(next(iter(self._wider)))
             if oldest is not None:
                 size -= oldest.configurations
@@ -182,7 +179,7 @@ class EditTrial:
         if among is not None:
             wanted = frozenset(among)
             chosen = [n for n in chosen if n in wanted]
-        if self._answers > MOST_ANSWERS_KEPT:
+        if self._answers > tuning.MOST_ANSWERS_KEPT:
             self._known.clear()
             self._answers = 0
         known = self._known[tuple(edits)]
@@ -200,7 +197,7 @@ class EditTrial:
         self, edits: Sequence[Edit], numbers: Iterable[int]
     ) -> Iterator[tuple[int, int | None]]:
         """Yield each line with the index at which it fails under the edits; none for a misfit."""
-        if self._reader.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
+        if self._reader.recognizer.configurations > tuning.MOST_CONFIGURATIONS_KEPT:
             self._reader.recognizer.release()
             self._forget_paths()
         try:
@@ -246,7 +243,9 @@ class EditTrial:
         wider = self.wider(edits)
         if wider is None:
             return False
-        short = sorted(among, key=lambda n: (len(self.lines[n].form.kinds), n))[:LINES_READ_TWICE]
+        short = sorted(among, key=lambda n: (len(self.lines[n].form.kinds), n))[
+            : tuning.LINES_READ_TWICE
+        ]
         return any(
             is_ambiguous(wider, start, kinds)
             for _, start, kinds in self.read_by(wider, edits, short)

@@ -16,14 +16,7 @@ from functools import partial
 
 from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
-from recovery.tuning import (
-    FILES_PER_LINE,
-    MOST_CORES,
-    MOST_FILE_TOKENS,
-    MOST_FILES,
-    MOST_REREAD,
-    MOST_REREAD_TEXT,
-)
+from recovery import tuning
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,10 +90,10 @@ class FileTrial:
         left: set[int] = set()
         finder = FailureFinder(wider)
         length = 0
-        for place in sorted(wanted)[:MOST_REREAD]:
+        for place in sorted(wanted)[: tuning.MOST_REREAD]:
             text = self._files[place].text()
             length += len(text)
-            if length > MOST_REREAD_TEXT or wider.size > MOST_CORES:
+            if length > tuning.MOST_REREAD_TEXT or wider.size > tuning.MOST_CORES:
                 break
             # the file was removed after the survey, or cannot change the result any more
             if not text or left.issuperset(line for _, line in wanted[place]):
@@ -137,18 +130,18 @@ class FileTrial:
         out: list[tuple[str, list[int], int]] = []
         for line in lines:
             if line not in self._texts:
-                places = self._starting.get(line, ())[:FILES_PER_LINE]
+                places = self._starting.get(line, ())[: tuning.FILES_PER_LINE]
                 texts = [self._files[place].text() for place in places]
                 self._texts[line] = [entry for text in texts for entry in self._read(text)]
             out += self._texts[line]
-            if len(out) >= MOST_FILES:
+            if len(out) >= tuning.MOST_FILES:
                 break
-        return out[:MOST_FILES]
+        return out[: tuning.MOST_FILES]
 
     def _read(self, text: str) -> Sequence[tuple[str, list[int], int]]:
         """Return the text with its token kinds and first failure; nothing if it is too long."""
         kinds = self._recognizer.kinds(text)
-        if len(kinds) > MOST_FILE_TOKENS:
+        if len(kinds) > tuning.MOST_FILE_TOKENS:
             return []
         _, failed = self._recognizer.run(self._recognizer.start, kinds)
         return [] if failed is None else [(text, kinds, failed)]

@@ -13,6 +13,7 @@ from typing import TypeVar
 
 from grammar.notation.edits import AddToken, Edit
 from grammar.parser.recognizer import Recognizer
+from recovery import tuning
 from recovery.clustering.cause import Cause, NegativeCounter, Proposal
 from recovery.clustering.edit_merging import merged_as_choice
 from recovery.clustering.edit_trial import EditTrial, TrialResult
@@ -21,31 +22,6 @@ from recovery.clustering.regression import ParsedFiles, no_parsed_files
 from recovery.forms.symbols import Token
 from recovery.proposals.candidates import Candidate, CandidateFinder
 from recovery.proposals.edit_site import LinePattern
-from recovery.tuning import (
-    ADVANCED_WEIGHT,
-    ALL_ALIKE_FACTOR,
-    BREADTH_FACTOR,
-    FLAW_FACTOR,
-    KEPT,
-    KEPT_LIGHT,
-    KEPT_PER_RESULT,
-    KEPT_PER_RULE,
-    LINE_WEIGHT,
-    MOST_PROPOSALS,
-    MOST_SCORED,
-    MOST_SCORED_LIGHT,
-    MOST_TRIED,
-    MOST_TRIED_LIGHT,
-    NARROW_PER_SITE,
-    OTHER_GROUP_WEIGHT,
-    OTHER_WORDS_FACTOR,
-    SAMPLE_LINES,
-    SPECIMENS,
-    STILL_NAMES_PART,
-    VARIED_LINES,
-    WIDE_PART,
-    WIDE_PER_SITE,
-)
 
 #: Which edits are sought.
 Wanted = Callable[[Sequence[Edit]], bool]
@@ -156,19 +132,19 @@ class CauseSearch:
 
     def _proposals(self, group: Sequence[int], wanted: Wanted | None) -> list[Proposal]:
         heavy = sorted(group, key=lambda n: (-self.weights[n], n))
-        specimens = _spread(heavy, SPECIMENS if self.is_thorough else 1)
-        most = MOST_TRIED if self.is_thorough else MOST_TRIED_LIGHT
+        specimens = _spread(heavy, tuning.SPECIMENS if self.is_thorough else 1)
+        most = tuning.MOST_TRIED if self.is_thorough else tuning.MOST_TRIED_LIGHT
         alike = self._alike(specimens[0])
         led_alike = self._led_alike(specimens[0])
-        near = dict.fromkeys((*specimens, *_spread(heavy, VARIED_LINES)))
+        near = dict.fromkeys((*specimens, *_spread(heavy, tuning.VARIED_LINES)))
         varied = dict.fromkeys(
-            (*near, *_spread(alike, VARIED_LINES), *_spread(led_alike, VARIED_LINES))
+            (*near, *_spread(alike, tuning.VARIED_LINES), *_spread(led_alike, tuning.VARIED_LINES))
         )
         tried = self.finder.find_common([self.lines[n] for n in varied], most, len(near))
         if wanted is not None:
             tried = [candidate for candidate in tried if wanted(candidate.edits)]
-        sample = set(specimens) | set(_spread(heavy, SAMPLE_LINES))
-        sample |= set(_spread(alike, SAMPLE_LINES)) | varied.keys()
+        sample = set(specimens) | set(_spread(heavy, tuning.SAMPLE_LINES))
+        sample |= set(_spread(alike, tuning.SAMPLE_LINES)) | varied.keys()
         first = self._tried(tried, most, sample)
         first += [
             (candidate, self.trial.result(candidate.edits, sample))
@@ -184,7 +160,7 @@ class CauseSearch:
             proposals.append(Proposal(edits, result.mended, result.advanced, breadth, negatives))
         kept = [self._names_kept(proposal) for proposal in proposals]
         useful = {proposal.edits: proposal for proposal in kept if self._gain(proposal)}
-        return self._ranked(list(useful.values()), heavy)[:MOST_PROPOSALS]
+        return self._ranked(list(useful.values()), heavy)[: tuning.MOST_PROPOSALS]
 
     def _names_kept(self, proposal: Proposal) -> Proposal:
         """Return the proposal, changed where files that could be read would be lost by its words.
@@ -200,7 +176,7 @@ class CauseSearch:
             edits = words.still_names(proposal.edits)
             if words.names is None or edits is None or self._loses(edits):
                 return proposal
-            breadth = proposal.breadth + profile.width(words.names) // STILL_NAMES_PART
+            breadth = proposal.breadth + profile.width(words.names) // tuning.STILL_NAMES_PART
         result = self.trial.result(edits, self.open)
         return Proposal(edits, result.mended, result.advanced, breadth, self.count_negatives(edits))
 
@@ -220,8 +196,8 @@ class CauseSearch:
         at: dict[object, list[Candidate]] = defaultdict(list)
         for candidate in candidates:
             at[candidate.place].append(candidate)
-        narrow = [c for c in candidates if c in at[c.place][:NARROW_PER_SITE]][
-            : most - most // WIDE_PART
+        narrow = [c for c in candidates if c in at[c.place][: tuning.NARROW_PER_SITE]][
+            : most - most // tuning.WIDE_PART
         ]
         out = [(c, self.trial.result(c.edits, sample)) for c in narrow]
         gains: dict[object, tuple[float, int]] = {}
@@ -233,9 +209,13 @@ class CauseSearch:
         wide = [
             c
             for place in promising
-            for c in at[place][NARROW_PER_SITE : NARROW_PER_SITE + WIDE_PER_SITE]
+            for c in at[place][
+                tuning.NARROW_PER_SITE : tuning.NARROW_PER_SITE + tuning.WIDE_PER_SITE
+            ]
         ]
-        return out + [(c, self.trial.result(c.edits, sample)) for c in wide[: most // WIDE_PART]]
+        return out + [
+            (c, self.trial.result(c.edits, sample)) for c in wide[: most // tuning.WIDE_PART]
+        ]
 
     def _blocks(self, number: int, heavy: Sequence[int]) -> list[tuple[Candidate, int]]:
         """Return the best blocks that a line may open, with the number of negatives accepted."""
@@ -253,7 +233,7 @@ class CauseSearch:
         found.sort(key=lambda pair: (-pair[0], str(pair[1].edits)))
         return [
             (candidate, self.count_negatives(candidate.edits))
-            for _, candidate in found[:KEPT_PER_RULE]
+            for _, candidate in found[: tuning.KEPT_PER_RULE]
         ]
 
     def lead(self, line: LinePattern) -> str:
@@ -282,17 +262,17 @@ class CauseSearch:
         if not mended and not further:
             return 0.0
         others = sum(self.weights[n] for n in result.mended - sought)
-        return mended + further * ADVANCED_WEIGHT + others * OTHER_GROUP_WEIGHT
+        return mended + further * tuning.ADVANCED_WEIGHT + others * tuning.OTHER_GROUP_WEIGHT
 
     def _worth(self, candidate: Candidate | Proposal, result: TrialResult | Proposal) -> float:
         """Return the gain, reduced for breadth and for words that are not what the lines lack."""
-        factor = BREADTH_FACTOR**candidate.breadth
+        factor = tuning.BREADTH_FACTOR**candidate.breadth
         words = [edit.name for edit in candidate.edits if isinstance(edit, AddToken)]
         if self._has_words and not words:
-            factor *= OTHER_WORDS_FACTOR
+            factor *= tuning.OTHER_WORDS_FACTOR
             result = replace(result, advanced=frozenset())  # it fails at what the word belongs to
         if words and 2 * sum(self._having[word] for word in words) < self._weight:
-            factor *= OTHER_WORDS_FACTOR
+            factor *= tuning.OTHER_WORDS_FACTOR
         return self._gain(result) * factor
 
     def _kept(self, results: list[tuple[Candidate, TrialResult]]) -> list[tuple[Candidate, int]]:
@@ -306,17 +286,17 @@ class CauseSearch:
         for candidate, _ in useful:
             last = candidate.edits[-1]
             kind = type(last), getattr(last, "rule", "")
-            if alike[kind] >= KEPT_PER_RULE:
+            if alike[kind] >= tuning.KEPT_PER_RULE:
                 continue
             negatives = self.count_negatives(candidate.edits)
             scored += 1
             alike[kind] += not negatives
             (costly if negatives else clean).append((candidate, negatives))
-            if len(clean) == (KEPT if self.is_thorough else KEPT_LIGHT) or scored == (
-                MOST_SCORED if self.is_thorough else MOST_SCORED_LIGHT
+            if len(clean) == (tuning.KEPT if self.is_thorough else tuning.KEPT_LIGHT) or scored == (
+                tuning.MOST_SCORED if self.is_thorough else tuning.MOST_SCORED_LIGHT
             ):
                 break
-        return clean + costly[: max(1, KEPT - len(clean))]
+        return clean + costly[: max(1, tuning.KEPT - len(clean))]
 
     def _diverse(
         self, results: list[tuple[Candidate, TrialResult]]
@@ -330,7 +310,7 @@ class CauseSearch:
             pair
             for same in alike.values()
             for pair in sorted(same, key=lambda co: (co[0].breadth, str(co[0].edits)))[
-                :KEPT_PER_RESULT
+                : tuning.KEPT_PER_RESULT
             ]
         ]
 
@@ -345,12 +325,12 @@ class CauseSearch:
         for p in proposals:
             further = [edits for edits, other in share.items() if other > share[p.edits]]
             negatives[p.edits] = self.count_negatives(p.edits, further)
-            part = LINE_WEIGHT + (1 - LINE_WEIGHT) * share[p.edits]
+            part = tuning.LINE_WEIGHT + (1 - tuning.LINE_WEIGHT) * share[p.edits]
             worth[p.edits] = self._worth(p, p) * part
             if p.mended.issuperset(alike):
-                worth[p.edits] *= ALL_ALIKE_FACTOR
+                worth[p.edits] *= tuning.ALL_ALIKE_FACTOR
             flaws = self._loses(p.edits) + self.trial.is_ambiguous(p.edits, p.mended & self._sought)
-            worth[p.edits] *= FLAW_FACTOR**flaws
+            worth[p.edits] *= tuning.FLAW_FACTOR**flaws
         return sorted(proposals, key=lambda p: (negatives[p.edits], -worth[p.edits], str(p.edits)))
 
 

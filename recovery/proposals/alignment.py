@@ -11,17 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from recovery import tuning
 from recovery.forms.symbols import Token
 from recovery.proposals.collocations import last_two
 from recovery.proposals.phrases import Phraser
-from recovery.tuning import (
-    MOST_ALIGNED,
-    MOST_ALIGNMENTS_KEPT,
-    MOST_CHOICES,
-    MOST_COLUMNS,
-    MOST_LINE_SHAPES,
-    PHRASE_LEVELS,
-)
 
 _Span = tuple[Token, ...]
 _Phrases = tuple[tuple[Token, ...], ...]
@@ -73,7 +66,7 @@ class Aligner:
         key = tuple(map(tuple, phrases))
         found = self._known.get((key, near))
         if found is None:
-            if len(self._known) >= MOST_ALIGNMENTS_KEPT:
+            if len(self._known) >= tuning.MOST_ALIGNMENTS_KEPT:
                 self._known.clear()
                 self._columns.clear()
                 self._rows.clear()
@@ -86,7 +79,7 @@ class Aligner:
     def _spelled(
         self, columns: Sequence[_Column], rows: int, near: frozenset[str]
     ) -> Iterator[tuple[str, ...]]:
-        for level in range(PHRASE_LEVELS if columns else 0):
+        for level in range(tuning.PHRASE_LEVELS if columns else 0):
             narrow = [self._written(column, level, near) for column in columns]
             if all(narrow):
                 for written in (_as_usual(self._phraser, columns, narrow, rows), narrow):
@@ -99,10 +92,10 @@ class Aligner:
             whole = {tuple(self._opened(row)) for row in whole}
         units = {unit for row in whole for unit in _units(self._kinds(row))}
         cut = {self._with_lists(row, units) for row in whole}
-        rows = sorted(cut, key=_by_length)[:MOST_ALIGNED]
+        rows = sorted(cut, key=_by_length)[: tuning.MOST_ALIGNED]
         columns = _columns(self._phraser, rows)
         are_alike = len(set(map(self._kinds, rows))) == 1 or _belong_together(columns, len(rows))
-        if len(columns) > MOST_COLUMNS or not (columns and are_alike):
+        if len(columns) > tuning.MOST_COLUMNS or not (columns and are_alike):
             return (), 0
         return columns, len(rows)
 
@@ -182,7 +175,7 @@ def _belong_together(columns: Sequence[_Column], rows: int) -> bool:
     if 2 * sum(in_all) >= len(columns):
         return True
     forms = {frozenset(column.cells) for column in columns}
-    return bool(columns[0].key and in_all[0]) and len(forms) <= MOST_LINE_SHAPES
+    return bool(columns[0].key and in_all[0]) and len(forms) <= tuning.MOST_LINE_SHAPES
 
 
 def _by_length(row: tuple[_Part, ...]) -> tuple[int, str]:
@@ -316,7 +309,7 @@ def _cover(phraser: Phraser, spans: Sequence[_Span]) -> list[str] | None:
     """Return a few rules or tokens that together read all the spans (greedy set cover)."""
     left = list(spans)
     out: list[str] = []
-    while left and len(out) < MOST_CHOICES:
+    while left and len(out) < tuning.MOST_CHOICES:
         reads: dict[str, list[_Span]] = {}
         for span in left:
             for rule in phraser.rules_for_all([span]):

@@ -12,17 +12,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from grammar.parser.lexer import SKIPPED, Lexer
+from recovery import tuning
 from recovery.forms.symbols import Token
-from recovery.tuning import (
-    BALANCED_FILES,
-    BALANCED_ORIGINS,
-    BALANCED_SHARE,
-    BLOCK_MIDDLES,
-    BODY_PART,
-    FILES_WITH_ONE_DAMAGED,
-    MIDDLE_ORIGINS,
-    MIDDLE_PART,
-)
 
 #: A line as its leading word, empty where it has none, and its tokens.
 _Line = tuple[str, tuple[Token, ...]]
@@ -76,7 +67,7 @@ def lines_of(text: str, lexer: Lexer) -> Iterator[tuple[str, ...]]:
 def find_blocks(
     files: Sequence[SourceFile],
     free: Iterable[str],
-    least: tuple[int, int] = (BALANCED_ORIGINS, BALANCED_FILES),
+    least: tuple[int, int] = (tuning.BALANCED_ORIGINS, tuning.BALANCED_FILES),
 ) -> list[BlockLines]:
     """The blocks that words open which the grammar has no use for, ``free``; the most found first.
 
@@ -120,8 +111,8 @@ def _is_pair(
 ) -> bool:
     places = sorted({*having[opener], *having[closer]})
     equal = [n for n in places if counts[n][opener] == counts[n][closer]]
-    damaged = len(places) >= FILES_WITH_ONE_DAMAGED
-    needed = max(least[1], min(BALANCED_SHARE * len(places), len(places) - damaged))
+    damaged = len(places) >= tuning.FILES_WITH_ONE_DAMAGED
+    needed = max(least[1], min(tuning.BALANCED_SHARE * len(places), len(places) - damaged))
     if len(equal) < needed:
         return False
     good = [n for n in equal if _is_balanced(opener, closer, files[n].lines)]
@@ -175,17 +166,19 @@ def _gathered(
     middles = [
         word
         for word in middles
-        if sum(word in s for s in seen) * MIDDLE_PART >= len(seen)
-        or len(frozenset[str]().union(*inside[word].values())) >= MIDDLE_ORIGINS
+        if sum(word in s for s in seen) * tuning.MIDDLE_PART >= len(seen)
+        or len(frozenset[str]().union(*inside[word].values())) >= tuning.MIDDLE_ORIGINS
     ]
-    if len(middles) > BLOCK_MIDDLES:
+    if len(middles) > tuning.BLOCK_MIDDLES:
         middles = []
     for word in middles:
         block.middles[word] = inside[word]
         often = max(s[word] for s in seen) > 1
         missing = any(not s[word] for s in seen)
         block.often[word] = ("*" if missing else "+") if often else ("?" if missing else "")
-    block.has_body = not middles or sum(w not in middles for w in first) * BODY_PART > len(first)
+    block.has_body = not middles or sum(w not in middles for w in first) * tuning.BODY_PART > len(
+        first
+    )
     return block
 
 

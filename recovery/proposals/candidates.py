@@ -18,6 +18,7 @@ from typing import TypeVar
 from grammar.notation.addresses import Address
 from grammar.notation.edits import AddAlternative, Edit, Insert, Widen
 from grammar.parser.recognizer import Recognizer
+from recovery import tuning
 from recovery.forms.symbols import Token
 from recovery.proposals.alignment import Aligner
 from recovery.proposals.block_inference import Block, BlockFinder
@@ -26,14 +27,6 @@ from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.similarity import Similarity
 from recovery.proposals.site_finder import EditSiteFinder
-from recovery.tuning import (
-    BLOCK_PART_BONUS,
-    BREADTH_FACTOR,
-    MOST_ALIGNMENTS_KEPT,
-    NO_LINE_RULE_COST,
-    SAME_RULE_FACTOR,
-    UNLIKELY_COST,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +104,7 @@ class CandidateFinder:
         for edits in sorted(ranks, key=lambda e: (-expected[e], spelled[e])):
             if not self.profile.is_left_recursive(edits[-1]):
                 rule = getattr(edits[-1], "rule", "")
-                varied[edits] = expected[edits] * SAME_RULE_FACTOR ** in_rule[rule]
+                varied[edits] = expected[edits] * tuning.SAME_RULE_FACTOR ** in_rule[rule]
                 in_rule[rule] += 1
         ordered = sorted(varied, key=lambda e: (-varied[e], spelled[e]))
         return [Candidate(edits, ranks[edits]) for edits in ordered]
@@ -122,7 +115,7 @@ class CandidateFinder:
         """Return the first site of a line in each slot, and its complete edits with their ranks."""
         known = self._sites.get(line)
         if known is None:
-            if len(self._sites) >= MOST_ALIGNMENTS_KEPT:
+            if len(self._sites) >= tuning.MOST_ALIGNMENTS_KEPT:
                 self._sites.clear()
             known = self._sites[line] = {}, {}
             for found in self._site_finder.find(line):
@@ -147,7 +140,7 @@ class CandidateFinder:
         known = self.profile.grammar.by_name
         rank = self.profile.width(rule) + self.phraser.breadth(block.symbols) + len(block.symbols)
         if rule not in self.profile.choices_of_lines:
-            rank += NO_LINE_RULE_COST
+            rank += tuning.NO_LINE_RULE_COST
         symbols = (*block.symbols, *self.closing(rule))
         return rank + self.similarity.dissimilarity(rule, symbols), (
             *self.profile.vocabulary.reserve(k for k in block.keywords if k not in known),
@@ -238,9 +231,12 @@ class CandidateFinder:
                     for body in self.profile.bodies:
                         text = f"({ended} {' '.join(body)})"
                         rank += len(body)
-                        yield rank - BLOCK_PART_BONUS, (*tokens, Insert(rule, place, f"{text}?"))
                         yield (
-                            rank - BLOCK_PART_BONUS + 1,
+                            rank - tuning.BLOCK_PART_BONUS,
+                            (*tokens, Insert(rule, place, f"{text}?")),
+                        )
+                        yield (
+                            rank - tuning.BLOCK_PART_BONUS + 1,
                             (*tokens, Insert(rule, place, f"{text}*")),
                         )
             case "insert":
@@ -270,17 +266,17 @@ class CandidateFinder:
             rank += self.similarity.dissimilarity(rule, symbols)
             rank -= self.profile.same_text_bonus(text)
             if self.similarity.repeats_sibling(rule, symbols):
-                rank += 2 * UNLIKELY_COST
+                rank += 2 * tuning.UNLIKELY_COST
             if self.similarity.extends(rule, symbols):
-                rank += 2 * UNLIKELY_COST
+                rank += 2 * tuning.UNLIKELY_COST
             if len(symbols) == 1 and self.phraser.would_be_read_twice(rule, text):
-                rank += 2 * UNLIKELY_COST
+                rank += 2 * tuning.UNLIKELY_COST
             yield rank, (*tokens, AddAlternative(rule, text))
 
 
 def _gain_expected(lines: int, rank: int) -> float:
     """Return the expected gain of a site that ``lines`` lines have."""
-    return lines * float(BREADTH_FACTOR**rank)
+    return lines * float(tuning.BREADTH_FACTOR**rank)
 
 
 _T = TypeVar("_T")

@@ -12,22 +12,13 @@ from functools import cached_property
 from itertools import islice, product
 
 from grammar.notation.model import Repeat, walk
+from recovery import tuning
 from recovery.forms.rule_matcher import RuleMatcher
 from recovery.forms.symbols import Token
 from recovery.proposals.bracket_groups import BracketGroups
 from recovery.proposals.collocations import Before, Collocations, symbols_in
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.segmentation import Segmenter
-from recovery.tuning import (
-    LONGEST_PHRASE,
-    MOST_COMBINATIONS,
-    MOST_NEAR_RULES,
-    MOST_OPERAND_RULES,
-    MOST_SYMBOLS,
-    NARROWER_RULE_COST,
-    REPEATED_COST,
-    USUAL_RULE_COST,
-)
 
 
 class Phraser:
@@ -126,14 +117,19 @@ class Phraser:
         rule = self.collocations.written_by.get(symbol, symbol)
         if rule not in self._wider:
             return 0
-        cost = 1 + len(self._wider[rule]) + (rule != symbol) + REPEATED_COST * self._repeats(rule)
+        cost = (
+            1
+            + len(self._wider[rule])
+            + (rule != symbol)
+            + tuning.REPEATED_COST * self._repeats(rule)
+        )
         usual = self.collocations.usual(before)
         if 2 * usual.get(symbol, 0) > sum(usual.values()):
-            return min(cost, USUAL_RULE_COST)
+            return min(cost, tuning.USUAL_RULE_COST)
         is_narrower = symbol not in usual and any(
             rule == u or rule in self._wider.get(u, ()) for u in usual
         )
-        return cost + (NARROWER_RULE_COST if is_narrower else 0)
+        return cost + (tuning.NARROWER_RULE_COST if is_narrower else 0)
 
     def _repeats(self, rule: str) -> bool:
         """Return whether a rule repeats a part."""
@@ -179,12 +175,12 @@ class Phraser:
 
         ``near`` are rules that the edited rule refers to; they are tried for operands too.
         """
-        if not words or len(words) > LONGEST_PHRASE:
+        if not words or len(words) > tuning.LONGEST_PHRASE:
             return
         seen: set[tuple[str, ...]] = set()
         for symbols in self._spellings(words, near):
             for shape in (symbols, _as_list(symbols)):
-                if len(shape) <= MOST_SYMBOLS and shape not in seen:
+                if len(shape) <= tuning.MOST_SYMBOLS and shape not in seen:
                     seen.add(shape)
                     yield shape
 
@@ -202,7 +198,7 @@ class Phraser:
         if all(choices):
             for level in (0, -1):
                 yield self._as_usual(parts, [levels[level] for levels in choices])
-            yield from islice(product(*choices), MOST_COMBINATIONS)
+            yield from islice(product(*choices), tuning.MOST_COMBINATIONS)
         if not any(keyword for _, keyword in words):
             rules = self.matcher.rules_for(tuple(kind for kind, _ in words))
             # an unused rule was probably written for this purpose
@@ -211,7 +207,7 @@ class Phraser:
                 return
             # an operand that is all of a phrase may be whatever reads it, the most used ones first
             ordered = sorted(rules, key=lambda r: (-self._uses[r], r))
-            yield from ((rule,) for rule in ordered[:MOST_OPERAND_RULES])
+            yield from ((rule,) for rule in ordered[: tuning.MOST_OPERAND_RULES])
 
     def _as_usual(self, parts: Sequence[tuple[Token, ...]], symbols: list[str]) -> tuple[str, ...]:
         """Return the symbols, replaced by what the grammar usually has there if it fits."""
@@ -284,7 +280,7 @@ class Phraser:
         return found
 
     def _narrow_to_wide(self, rules: frozenset[str], near: frozenset[str]) -> tuple[str, ...]:
-        close = sorted(rules & near)[:MOST_NEAR_RULES]
+        close = sorted(rules & near)[: tuning.MOST_NEAR_RULES]
         rules = frozenset(r for r in rules if not self._is_one_level(r)) or rules
         # an unused rule was probably written for this purpose, so it comes first
         narrow = min(

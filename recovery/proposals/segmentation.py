@@ -8,16 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from recovery import tuning
 from recovery.brackets import BRACKETS, CLOSING
 from recovery.forms.rule_matcher import RuleMatcher
 from recovery.forms.symbols import Token
-from recovery.tuning import (
-    LONGEST_SEGMENTED,
-    MOST_ANSWERS_KEPT,
-    OPERAND_COST,
-    SEAM_COST,
-    TOKEN_COST,
-)
 
 
 class Segmenter:
@@ -29,11 +23,11 @@ class Segmenter:
 
     def parts(self, words: Sequence[Token]) -> list[tuple[Token, ...]] | None:
         """Return the words cut into the fewest operands and single tokens; ``None`` if too many."""
-        if len(words) > LONGEST_SEGMENTED:
+        if len(words) > tuning.LONGEST_SEGMENTED:
             return None
         key = tuple(words)
         if key not in self._cuts:
-            if len(self._cuts) >= MOST_ANSWERS_KEPT:
+            if len(self._cuts) >= tuning.MOST_ANSWERS_KEPT:
                 self._cuts.clear()
             self._cuts[key] = self._cut(key)
         return self._cuts[key]
@@ -53,9 +47,9 @@ class Segmenter:
                 if rest is None or not self._can_be_written(part):
                     continue
                 cost = rest[0] + (
-                    TOKEN_COST
+                    tuning.TOKEN_COST
                     if len(part) == 1
-                    else OPERAND_COST + SEAM_COST * (self._seams(part) + squeezed)
+                    else tuning.OPERAND_COST + tuning.SEAM_COST * (self._seams(part) + squeezed)
                 )
                 known = best[start]
                 if known is None or cost < known[0]:

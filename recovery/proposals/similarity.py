@@ -12,18 +12,9 @@ from difflib import SequenceMatcher
 from functools import cached_property
 
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat, Rule
+from recovery import tuning
 from recovery.forms.parts import choices
 from recovery.proposals.grammar_profile import GrammarProfile
-from recovery.tuning import (
-    HUB_ALTERNATIVES,
-    LOOSE_GATHERING_COST,
-    MANY_FORMS,
-    NEW_FORM_COST,
-    SIMILAR_RATIO,
-    SIMILARITY_STEPS,
-    STRONG_SIMILARITY_STEPS,
-    STRONGEST_SIMILARITY_STEPS,
-)
 
 _NAMES = re.compile(r"\w+")
 
@@ -58,32 +49,38 @@ class Similarity:
             return 0
         kinds = {_kind(old[0]) for old in known if old}
         if len(symbols) == 1 and self._is_one_of_words(rule):
-            return -STRONGEST_SIMILARITY_STEPS if _kind(new[0]) in kinds else -SIMILARITY_STEPS
+            return (
+                -tuning.STRONGEST_SIMILARITY_STEPS
+                if _kind(new[0]) in kinds
+                else -tuning.SIMILARITY_STEPS
+            )
         if self.gathers(rule):
             if not self._is_single(symbols):
                 return (
-                    STRONG_SIMILARITY_STEPS
+                    tuning.STRONG_SIMILARITY_STEPS
                     if self._is_known_by(rule, symbols[0])
-                    else LOOSE_GATHERING_COST
+                    else tuning.LOOSE_GATHERING_COST
                 )
             if not self.profile.is_free(symbols[0]):
                 # it has its place already, beside some of these alternatives or others
-                return -SIMILARITY_STEPS - self._shared(rule, symbols[0])
+                return -tuning.SIMILARITY_STEPS - self._shared(rule, symbols[0])
             return (
-                -STRONGEST_SIMILARITY_STEPS if _kind(new[0]) in kinds else -STRONG_SIMILARITY_STEPS
+                -tuning.STRONGEST_SIMILARITY_STEPS
+                if _kind(new[0]) in kinds
+                else -tuning.STRONG_SIMILARITY_STEPS
             )
         leads = self._leads(rule)
         if not leads.isdisjoint(choices(symbols[0])):
             # what goes on alike is another form of the same, which an edit of that shows better
             alike = any(some[1:2] == list(symbols[1:2]) for some in self._written[rule])
-            return 0 if alike else -STRONG_SIMILARITY_STEPS
+            return 0 if alike else -tuning.STRONG_SIMILARITY_STEPS
         if len(leads) == 1 and "" not in leads:
-            return STRONG_SIMILARITY_STEPS
+            return tuning.STRONG_SIMILARITY_STEPS
         best = _likeness(new, known)
-        if best >= SIMILAR_RATIO and len(known) > 1:
+        if best >= tuning.SIMILAR_RATIO and len(known) > 1:
             same = _likeness(_NAMES.findall(" ".join(symbols)), self._names[rule])
-            return -round(SIMILARITY_STEPS * (best + same))
-        return NEW_FORM_COST + max(0, MANY_FORMS - len(known))
+            return -round(tuning.SIMILARITY_STEPS * (best + same))
+        return tuning.NEW_FORM_COST + max(0, tuning.MANY_FORMS - len(known))
 
     def _shared(self, rule: str, symbol: str) -> int:
         """Return how many alternatives a rule shares with one that has the symbol as another."""
@@ -143,7 +140,7 @@ class Similarity:
             return True
         another_word = len(symbols) == 1 and self._is_one_of_words(rule)
         same_words = leads.issuperset(choices(symbols[0]))
-        known = "" in leads or same_words or len(leads) >= HUB_ALTERNATIVES
+        known = "" in leads or same_words or len(leads) >= tuning.HUB_ALTERNATIVES
         return rule in self._gathered and not (known or another_word)
 
     @cached_property

@@ -16,6 +16,7 @@ from grammar.notation.model import Alternative, Element, Group, Reference, Repea
 from grammar.parser.failures import Form
 from grammar.parser.lazy_automaton import Configuration
 from grammar.parser.recognizer import State
+from recovery import tuning
 from recovery.forms.symbols import Token
 from recovery.proposals.edit_site import (
     EditSite,
@@ -28,20 +29,6 @@ from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.line_sites import LineSiteFinder
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.similarity import Similarity
-from recovery.tuning import (
-    LONGEST_PREFIX,
-    LONGEST_RUN,
-    MOST_RESUMPTIONS,
-    MOST_SKIPPED,
-    NOT_BEGUN_COST,
-    REPETITION_BREADTH_PART,
-    REPETITION_COST,
-    SHARED_ELEMENTS,
-    SITE_COST,
-    UNLIKELY_COST,
-    WIDEN_COST,
-    WIDEN_FIRST_WORD_COST,
-)
 
 
 class EditSiteFinder:
@@ -130,7 +117,7 @@ class EditSiteFinder:
                     rule,
                     (1, 1),
                     tuple(words[start:end]),
-                    self.profile.width(rule) + SITE_COST,
+                    self.profile.width(rule) + tuning.SITE_COST,
                 )
 
     def _begun(self, before: State, form: Form) -> set[tuple[str, tuple[int, ...]]]:
@@ -147,7 +134,7 @@ class EditSiteFinder:
         """Yield sites before the failure, where the line was read as something else."""
         recognizer, network = self.recognizer, self.recognizer.network
         begun = self._begun(before, form)
-        for start in range(max(0, form.index - MOST_SKIPPED), form.index):
+        for start in range(max(0, form.index - tuning.MOST_SKIPPED), form.index):
             state, _ = recognizer.run(before, form.kinds[:start])
             for site in configurations_of(self.recognizer, state):
                 rule = network.rule[site[0]]
@@ -157,9 +144,9 @@ class EditSiteFinder:
                 for entry, back in network.calls[site[0]]:
                     beyond = recognizer.at((back, site[1]), state)
                     called = network.rule[entry]
-                    rank = self.profile.width(called) + SITE_COST
+                    rank = self.profile.width(called) + tuning.SITE_COST
                     if (called, (back, *site[1].positions())) not in begun:
-                        rank += NOT_BEGUN_COST
+                        rank += tuning.NOT_BEGUN_COST
                     for end in self._reading_on(beyond, words, start, form.index):
                         yield EditSite("alternative", called, (1, 1), tuple(words[start:end]), rank)
                 # the accepted tokens may end where another reading continued and failed later
@@ -175,7 +162,7 @@ class EditSiteFinder:
     def _reading_on(self, state: State, words: list[Token], start: int, first: int) -> list[int]:
         """Return the indices, from ``first`` on, from which the rest can be read in ``state``."""
         kinds = [kind for kind, _ in words]
-        ends = range(max(start + 1, first), min(len(kinds), start + MOST_SKIPPED + 1))
+        ends = range(max(start + 1, first), min(len(kinds), start + tuning.MOST_SKIPPED + 1))
         return [end for end in ends if self.recognizer.run(state, kinds[end:])[1] is None]
 
     # --------------------------------------------------------------------------- at one site
@@ -203,7 +190,9 @@ class EditSiteFinder:
                 comes_next = words[end][0] in self.profile.first(sequence, number)
                 # after all optional elements, except those that the line has next; before the first
                 # element of a rule only if that element itself comes next
-                is_prefix = position != base or (not gathers and end - start <= LONGEST_PREFIX)
+                is_prefix = position != base or (
+                    not gathers and end - start <= tuning.LONGEST_PREFIX
+                )
                 is_suffix = is_last and position != base and not begins_loop
                 if ((comes_next and is_prefix) or is_suffix) and not self._is_behind_line_end(
                     rule, place
@@ -213,7 +202,7 @@ class EditSiteFinder:
             is_end = 0 < start == len(words) - 1 and words[start][0] == self.recognizer.line_kind
             if is_end and rule == self.grammar.start:
                 # a line end where the file had to end
-                rank = self._insertion_width(rule) + SITE_COST
+                rank = self._insertion_width(rule) + tuning.SITE_COST
                 yield rank, (Insert(rule, place, f"{self.recognizer.lexer.line_end}*"),)
             yield from self._blocks(rule, place, words[start:])
             if number > len(sequence.elements):
@@ -242,7 +231,7 @@ class EditSiteFinder:
         kinds = [kind for kind, _ in words]
         whole, part = [], []
         # the end of the line itself is never part of a phrase
-        for end in range(max(start + 1, earliest), min(len(kinds), start + LONGEST_RUN)):
+        for end in range(max(start + 1, earliest), min(len(kinds), start + tuning.LONGEST_RUN)):
             unknown = next((i for i in range(end, len(words)) if words[i][1]), len(kinds))
             if unknown == end:
                 continue  # an unknown keyword belongs to the phrase
@@ -251,7 +240,7 @@ class EditSiteFinder:
                 whole.append(end)
             elif failed > 1:
                 part.append(end)
-        return whole[:MOST_RESUMPTIONS] or part[:1]
+        return whole[: tuning.MOST_RESUMPTIONS] or part[:1]
 
     def _insertion(self, rule: str, place: Address, words: Sequence[Token]) -> EditSite:
         width = self._insertion_width(rule)
@@ -262,10 +251,10 @@ class EditSiteFinder:
         if isinstance(before, Reference) and not before.is_token:
             alone = self.profile.is_hub(rule) and len(elements) == 1
             if alone or (place[-1] > 1 and self.profile.is_hub(before.name)):
-                width += UNLIKELY_COST  # behind one of many statements, not in it
+                width += tuning.UNLIKELY_COST  # behind one of many statements, not in it
         if self._is_new_word(words[-1]) and not self._is_new_word(words[0]):
             width += 1  # of two ways to cut the line, the word is rather ahead of its operand
-        return EditSite("insert", rule, place, tuple(words), width + SITE_COST)
+        return EditSite("insert", rule, place, tuple(words), width + tuning.SITE_COST)
 
     def _is_behind_line_end(self, rule: str, place: Address) -> bool:
         """Return whether a place is after a line end, where lines are read and no part of one."""
@@ -284,7 +273,7 @@ class EditSiteFinder:
     def _insertion_width(self, rule: str) -> int:
         """Return the width of an insertion into a rule; less for a single reference."""
         width = self.profile.width(rule)
-        return width - UNLIKELY_COST if self.profile.is_single_reference(rule) else width
+        return width - tuning.UNLIKELY_COST if self.profile.is_single_reference(rule) else width
 
     def _repetitions(self, rule: str, place: Address, words: Sequence[Token]) -> Iterator[EditSite]:
         """Yield the repetition of the operand before a place, with the signs between."""
@@ -296,8 +285,8 @@ class EditSiteFinder:
         signs = self._signs_between(before.name, words)
         is_operand = rule in self.phraser.matcher.value_rules
         if signs and (is_operand or not any(keyword for _, keyword in signs)):
-            rank = self._insertion_width(rule) + REPETITION_COST
-            rank += self.phraser.breadth([before.name]) // REPETITION_BREADTH_PART
+            rank = self._insertion_width(rule) + tuning.REPETITION_COST
+            rank += self.phraser.breadth([before.name]) // tuning.REPETITION_BREADTH_PART
             yield EditSite("repetition", rule, place, signs, rank)
 
     def _signs_between(self, rule: str, words: Sequence[Token]) -> tuple[Token, ...]:
@@ -322,7 +311,7 @@ class EditSiteFinder:
         """Yield a known block that this line begins and that is not expected at this place."""
         if any(keyword for _, keyword in words):
             return
-        rank = self.profile.width(rule) + SITE_COST
+        rank = self.profile.width(rule) + tuning.SITE_COST
         elements = self.profile.sequence(rule, place[:-1]).elements
         following = elements[place[-1] - 1] if place[-1] <= len(elements) else None
         inner = following.item if isinstance(following, Repeat) else following
@@ -335,14 +324,14 @@ class EditSiteFinder:
                     if not self.similarity.is_foreign(hub, symbols):
                         worth = (
                             self.profile.width(hub)
-                            + SITE_COST
+                            + tuning.SITE_COST
                             + self.similarity.dissimilarity(hub, symbols)
                         )
                         yield worth, (AddAlternative(hub, " ".join(symbols)),)
             if rule != self.grammar.start and self.profile.is_at_start(rule, place):
                 continue
             for text in (f"{block}*", f"({block} {self.recognizer.lexer.line_end}*)*"):
-                yield rank + UNLIKELY_COST, (Insert(rule, place, text),)
+                yield rank + tuning.UNLIKELY_COST, (Insert(rule, place, text),)
 
     def _replacements(
         self, rule: str, place: Address, element: Element, words: Sequence[Token]
@@ -353,7 +342,7 @@ class EditSiteFinder:
         called = element.name if isinstance(element, Reference) and not element.is_token else None
         # another kind of statement belongs to the caller
         if called and (profile.has_choice(called) or not (whole and profile.is_hub(rule))):
-            rank = profile.width(called) + SITE_COST
+            rank = profile.width(called) + tuning.SITE_COST
             yield EditSite("alternative", called, (1, 1), tuple(words), rank)
         leading = place[-1] == 1 and self.vocabulary.is_keyword(element)
         closing = place[-1] == len(elements) and self.vocabulary.is_keyword(element)
@@ -368,15 +357,17 @@ class EditSiteFinder:
             return  # the same as an alternative; the words that begin and close a line or a block
         if called and place[-1] == 1 and len(place) == 2 and profile.is_hub(rule):
             return  # the same as an alternative of the rule or of the one it calls
-        if profile.is_at_start(rule, place) and len(words) > LONGEST_PREFIX:
+        if profile.is_at_start(rule, place) and len(words) > tuning.LONGEST_PREFIX:
             return  # so long another beginning is a different construct
-        rank = profile.width(rule) + (WIDEN_FIRST_WORD_COST if leading else WIDEN_COST)
-        if leading and len(elements) < SHARED_ELEMENTS:
-            rank += 2 * UNLIKELY_COST  # the two words have hardly anything in common
+        rank = profile.width(rule) + (
+            tuning.WIDEN_FIRST_WORD_COST if leading else tuning.WIDEN_COST
+        )
+        if leading and len(elements) < tuning.SHARED_ELEMENTS:
+            rank += 2 * tuning.UNLIKELY_COST  # the two words have hardly anything in common
         if isinstance(element, Repeat):
-            rank += UNLIKELY_COST  # one more kind of item in a loop that is for others
+            rank += tuning.UNLIKELY_COST  # one more kind of item in a loop that is for others
         if self.vocabulary.is_keyword(element) and (len(words) > 1 or closing):
-            rank += UNLIKELY_COST
+            rank += tuning.UNLIKELY_COST
         yield EditSite("widen", rule, place, tuple(words), rank)
 
     def _is_new_word(self, token: Token) -> bool:
@@ -402,7 +393,7 @@ class EditSiteFinder:
         places = network.automata[rule].places
         sequence = self.profile.sequence(rule, place[:-1])
         rest = [kind for kind, _ in words[start:]]
-        for count in range(1, MOST_SKIPPED + 1):
+        for count in range(1, tuning.MOST_SKIPPED + 1):
             last = (*place[:-1], place[-1] + count)
             if last[-1] > len(sequence.elements) + 1 or (
                 count == len(sequence.elements) and len(place) == 2
@@ -413,14 +404,14 @@ class EditSiteFinder:
             for target in (base + s for s, at in enumerate(places) if last in at):
                 _, failed = self.recognizer.run(self.recognizer.at((target, stack), state), rest)
                 if failed is None or failed > 1:
-                    rank = self.profile.width(rule) + SITE_COST + count
+                    rank = self.profile.width(rule) + tuning.SITE_COST + count
                     left_out = sequence.elements[place[-1] - 1 : last[-1] - 1]
                     is_end = place[-1] == 1 or last[-1] > len(sequence.elements)
                     if is_end and any(map(self.vocabulary.is_keyword, left_out)):
                         if rule in self.profile.blocks:
                             break  # the words that open and close a block
                         is_whole = failed is None and self.recognizer.lexer.is_keyword(rest[0])
-                        rank += 0 if is_whole else 2 * UNLIKELY_COST
+                        rank += 0 if is_whole else 2 * tuning.UNLIKELY_COST
                     yield rank, (MakeOptional(rule, place, count),)
                     break
 

@@ -19,17 +19,11 @@ from dataclasses import dataclass, field
 from grammar.parser.failures import Form
 from grammar.parser.lexer import ERROR, Lexer
 from grammar.parser.recognizer import Recognizer
+from recovery import tuning
 from recovery.survey.failing_line import FailingLine
-from recovery.tuning import (
-    SUSPECTED_ALONE,
-    SUSPECTED_CHOICE,
-    SUSPECTED_FILES,
-    SUSPECTED_NEIGHBOURS,
-    SUSPECTED_SHARE,
-)
 
 _Failure = tuple[str, FailingLine, Form]
-_MOST_NEIGHBOURS = max(2, SUSPECTED_NEIGHBOURS)
+_MOST_NEIGHBOURS = max(2, tuning.SUSPECTED_NEIGHBOURS)
 # Signs that can follow a keyword, but no plain name at the beginning of a line.
 _BEGINS_OPERAND = frozenset("{-+")
 _ENDS_OPERAND = frozenset("])}")
@@ -69,13 +63,13 @@ class _Uses:
     def are_of_a_keyword(self, *, is_sole: bool) -> bool:
         """Return whether the name is taken for a keyword; ``is_sole`` counts as many neighbours."""
         return (
-            len(self.files) >= SUSPECTED_FILES
-            and self.odd >= SUSPECTED_SHARE * (self.odd + self.plain)
+            len(self.files) >= tuning.SUSPECTED_FILES
+            and self.odd >= tuning.SUSPECTED_SHARE * (self.odd + self.plain)
             and (
                 is_sole
-                or self.alone >= SUSPECTED_ALONE
-                or max(len(self.before), len(self.after)) >= SUSPECTED_NEIGHBOURS
-                or (len(self.led) >= SUSPECTED_FILES and len(self.after) > 1)
+                or self.alone >= tuning.SUSPECTED_ALONE
+                or max(len(self.before), len(self.after)) >= tuning.SUSPECTED_NEIGHBOURS
+                or (len(self.led) >= tuning.SUSPECTED_FILES and len(self.after) > 1)
             )
         )
 
@@ -166,14 +160,14 @@ class SuspectedKeywords:
             before, kind = form.kinds[form.index - 1 : form.index + 1]
             if kind == self.lexer.name_kind and self.lexer.is_keyword(before):
                 words = places[form.kinds[: form.index]]
-                if len(words) <= SUSPECTED_CHOICE:  # no more are asked for
+                if len(words) <= tuning.SUSPECTED_CHOICE:  # no more are asked for
                     words[failed.words[form.index]] += 1
         return frozenset(
             word
             for words in places.values()
-            if len(words) <= SUSPECTED_CHOICE
+            if len(words) <= tuning.SUSPECTED_CHOICE
             for word, count in words.items()
-            if count >= SUSPECTED_NEIGHBOURS
+            if count >= tuning.SUSPECTED_NEIGHBOURS
         )
 
     def _count(
@@ -182,7 +176,7 @@ class SuspectedKeywords:
         is_behind = place > 0 and self._is_operand(kinds, place - 1)
         is_ahead = self._is_operand(kinds, place + 1)
         uses.odd += 1
-        _add(uses.files, digest, SUSPECTED_FILES)
+        _add(uses.files, digest, tuning.SUSPECTED_FILES)
         uses.alone += not (is_behind or is_ahead)
         if is_behind:
             _add(uses.before, words[place - 1], _MOST_NEIGHBOURS)
@@ -190,7 +184,7 @@ class SuspectedKeywords:
             for word in words[place + 1 : place + 2]:
                 _add(uses.after, word, _MOST_NEIGHBOURS)
             if place == 0:
-                _add(uses.led, digest, SUSPECTED_FILES)
+                _add(uses.led, digest, tuning.SUSPECTED_FILES)
 
     def _stands_out(self, form: Form, place: int) -> bool:
         """Return whether a name is used like a keyword.

@@ -23,12 +23,11 @@ from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
-from recovery.clustering import edit_trial
+from recovery import tuning
 from recovery.clustering.edit_trial import EditTrial, TrialResult, edited
 from recovery.proposals.candidates import CandidateFinder
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
-from recovery.tuning import MOST_TRIED
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
 RECOGNIZER = Recognizer(PRELIMINARY)
@@ -160,7 +159,7 @@ def test_candidates_mend_what_they_say() -> None:
     finder = CandidateFinder(RECOGNIZER)
     chance = Random(3)
     for number in (0, 5, 9, 12, 17):
-        found = finder.find_common([trial().lines[number]], MOST_TRIED)
+        found = finder.find_common([trial().lines[number]], tuning.MOST_TRIED)
         for candidate in chance.sample(found, min(3, len(found))):
             grammar = Recognizer(read(apply(PRELIMINARY, candidate.edits).text))
             expected = {i for i, line in enumerate(FAILING) if grammar.accepts(program(line))}
@@ -175,7 +174,7 @@ def test_a_detour_is_what_the_edited_grammar_reads(number: int) -> None:
     """Candidates read as detours do to lines what a recogniser of the edited grammar does."""
     finder = CandidateFinder(RECOGNIZER)
     tried = trial()
-    found = finder.find_common([tried.lines[number]], MOST_TRIED)
+    found = finder.find_common([tried.lines[number]], tuning.MOST_TRIED)
     for candidate in Random(number).sample(found, min(30, len(found))):
         wider, places = edited(RECOGNIZER, candidate.edits), tried.relevant(candidate.edits)
         mended, advanced = set(), set()
@@ -290,7 +289,7 @@ def test_large_recognisers_are_forgotten(monkeypatch: pytest.MonkeyPatch) -> Non
     assert first is trial.wider(edits[0])
     assert trial.wider(edits[1]) is not None
     assert first is trial.wider(edits[0])
-    monkeypatch.setattr(edit_trial, "MOST_CONFIGURATIONS_KEPT", 0)
+    monkeypatch.setattr(tuning, "MOST_CONFIGURATIONS_KEPT", 0)
     assert trial.wider(edits[2]) is not None
     assert first is not trial.wider(edits[0])
 
