@@ -259,10 +259,7 @@ def test_the_reproducer_fails_as_it_says(record: SurveyRecord) -> None:
         small = entry["reproducer"]
         assert small is not None
         (file,) = survey_texts([("small.src", small["text"])], PRELIMINARY).files
-        assert (small["line"], small["column"]) == (
-            file.failures[0].line,
-            file.failures[0].column,
-        )
+        assert (small["line"], small["column"]) == (file.failures[0].line, file.failures[0].column)
 
 
 # ------------------------------------------------------------------------------- the borders
@@ -296,12 +293,7 @@ def test_a_survey_of_nothing_has_a_record() -> None:
     """Where all was skipped there is a record that says so."""
     found = survey_texts([], PRELIMINARY)
     record = record_of(found, cluster(found), grammar_name="g")
-    assert (0, 0, 0, []) == (
-        record["files"],
-        record["parsed"],
-        record["bytes"],
-        record["clusters"],
-    )
+    assert (0, 0, 0, []) == (record["files"], record["parsed"], record["bytes"], record["clusters"])
 
 
 @pytest.mark.parametrize("line", ["A=" + "(" * 500, "A ? " * 500, "A=F(" + "1," * 500])

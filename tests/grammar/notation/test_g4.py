@@ -265,11 +265,7 @@ def test_exchanging_a_rule() -> None:
         ("s : A ;\nC : 'ab'..'c' ;", 3, "rule C: 'ab'..'c' is no range of characters"),
         ("s : A ;\nC : 'z'..'a' ;", 3, "rule C: 'z'..'a' is no range of characters"),
         ("s : A ;\nC : [z-a] ;", 3, "rule C: 'z'-'a' is a range that runs backwards"),
-        (
-            "s : A ;\nC : 'x' -> pushMode(M) ;",
-            3,
-            "rule C: the command pushMode is not supported",
-        ),
+        ("s : A ;\nC : 'x' -> pushMode(M) ;", 3, "rule C: the command pushMode is not supported"),
         ("s : A ;\nC : 'x' -> more ;", 3, "rule C: the command more is not supported"),
         ("s : A ;\ns : B ;", 3, "rule s is defined twice"),
         ("s : mode ;\nmode : A ;", 3, "ANTLR keeps the word mode for itself"),

@@ -16,10 +16,7 @@ from grammar.notation.unsupported import unsupported
         ("lexer grammar L;", "a grammar of the lexer or the parser alone"),
         ("import Common;", "an import"),
         ("mode INSIDE;", "a mode of the lexer"),
-        (
-            "A : 'x' -> pushMode(INSIDE) ;",
-            "a command of the lexer but skip and channel(HIDDEN)",
-        ),
+        ("A : 'x' -> pushMode(INSIDE) ;", "a command of the lexer but skip and channel(HIDDEN)"),
         ("a returns [int v] : B ;", "a clause of a rule"),
         ("a : left=b ;", "a label of an element"),
         ("a : all+=b ;", "a label of an element"),

@@ -8,11 +8,7 @@ import pytest
 
 from grammar.notation.addresses import Address
 from grammar.notation.g4 import read
-from grammar.notation.model import (
-    Grammar,
-    Repeat,
-    walk,
-)
+from grammar.notation.model import Grammar, Repeat, walk
 from grammar.notation.wellformed import shortest_length, shortest_lengths
 from grammar.parser import coverage as measuring
 from grammar.parser.coverage import GrammarCoverage

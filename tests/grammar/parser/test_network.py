@@ -13,12 +13,7 @@ from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.notation.wellformed import problem
 from grammar.parser.lexer import lexer_of
-from grammar.parser.network import (
-    Network,
-    is_left_recursive,
-    network_of,
-    with_rule,
-)
+from grammar.parser.network import Network, is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences
 

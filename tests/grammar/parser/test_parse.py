@@ -9,11 +9,7 @@ from random import Random
 import pytest
 
 from grammar.notation.g4 import read
-from grammar.notation.model import (
-    Grammar,
-    Repeat,
-    walk,
-)
+from grammar.notation.model import Grammar, Repeat, walk
 from grammar.notation.wellformed import shortest_length, shortest_lengths
 from grammar.parser import parse as parsing
 from grammar.parser.ambiguity import is_ambiguous
@@ -331,11 +327,7 @@ def test_own_programs_have_one_reading(trees: Mapping[Path, Tree]) -> None:
 @pytest.mark.parametrize(
     ("text", "rule", "depth"),
     [
-        (
-            "DEF A()\n" + "LOOP\n" * 5000 + "ENDLOOP\n" * 5000 + "END\n",
-            "loopStatement",
-            5000,
-        ),
+        ("DEF A()\n" + "LOOP\n" * 5000 + "ENDLOOP\n" * 5000 + "END\n", "loopStatement", 5000),
         (f"DEF A()\nX={'(' * 2000}1{')' * 2000}\nEND\n", "primary", 2001),
         (f"DEF A()\nX={'A[' * 2000}1{']' * 2000}\nEND\n", "index", 2000),
         (f"DEF A()\nF({'1,' * 2000}1)\nEND\n", "expression", 2001),

@@ -8,15 +8,7 @@ import pytest
 from grammar.diagnostics.codes import by_code, by_slug, code, of_message
 from grammar.semantics.predefined import System
 from grammar.semantics.rules import is_confirmed, tiers
-from grammar.semantics.types import (
-    INT,
-    REAL,
-    SCALARS,
-    UNKNOWN,
-    Array,
-    Enumeration,
-    Structure,
-)
+from grammar.semantics.types import INT, REAL, SCALARS, UNKNOWN, Array, Enumeration, Structure
 
 SOURCES = {"S2", "S3", "S5", "S6", "D3", "R"}
 
@@ -71,14 +63,7 @@ def test_messages_that_say_the_same_are_those_that_we_do_not_report(system: Syst
 
 
 @pytest.mark.parametrize(
-    "table",
-    [
-        "variables.tsv",
-        "types.tsv",
-        "channels.tsv",
-        "functions.tsv",
-        "messages.tsv",
-    ],
+    "table", ["variables.tsv", "types.tsv", "channels.tsv", "functions.tsv", "messages.tsv"]
 )
 def test_every_row_has_a_known_source(table: str) -> None:
     """A source is a key of the README or a rule that there is."""

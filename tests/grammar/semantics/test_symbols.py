@@ -3,13 +3,7 @@
 import pickle
 
 from grammar.semantics.symbol_table import table_of
-from grammar.semantics.symbols import (
-    Access,
-    Kind,
-    ModuleTable,
-    Symbol,
-    TypeReference,
-)
+from grammar.semantics.symbols import Access, Kind, ModuleTable, Symbol, TypeReference
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.references import Space

@@ -84,32 +84,17 @@ EXPRESSIONS = [
     ("$OUT[3]", "Subscript(base=$OUT indices=[3])"),
     ("T[]", "Subscript(base=T indices=[-])"),
     ("T[1,,3]", "Subscript(base=T indices=[1 - 3])"),
-    (
-        "P.A[2].B",
-        "Member(base=Subscript(base=Member(base=P name=A) indices=[2]) name=B)",
-    ),
+    ("P.A[2].B", "Member(base=Subscript(base=Member(base=P name=A) indices=[2]) name=B)"),
     ("F()", "Call(name=F arguments=[])"),
     ("F(1)", "Call(name=F arguments=[1])"),
     ("F(,A,)", "Call(name=F arguments=[- A -])"),
     ("F(:C)", "Call(name=F arguments=[ChannelName(name=C)])"),
     ("(A)", "Parenthesised(inner=A)"),
     ("-A", "Unary(operator=- operand=A)"),
-    (
-        "not b_not A",
-        "Unary(operator=NOT operand=Unary(operator=B_NOT operand=A))",
-    ),
-    (
-        "A-B-C",
-        "Binary(operator=- left=Binary(operator=- left=A right=B) right=C)",
-    ),
-    (
-        "A+B*C",
-        "Binary(operator=+ left=A right=Binary(operator=* left=B right=C))",
-    ),
-    (
-        "A==B and C",
-        "Binary(operator=== left=A right=Binary(operator=AND left=B right=C))",
-    ),
+    ("not b_not A", "Unary(operator=NOT operand=Unary(operator=B_NOT operand=A))"),
+    ("A-B-C", "Binary(operator=- left=Binary(operator=- left=A right=B) right=C)"),
+    ("A+B*C", "Binary(operator=+ left=A right=Binary(operator=* left=B right=C))"),
+    ("A==B and C", "Binary(operator=== left=A right=Binary(operator=AND left=B right=C))"),
     (
         "A OR B EXOR C AND D",
         "Binary(operator=OR left=A right=Binary(operator=EXOR left=B "
@@ -117,10 +102,7 @@ EXPRESSIONS = [
     ),
     ("A=>B", "Binary(operator=>= left=A right=B)"),
     ("A=<B", "Binary(operator=<= left=A right=B)"),
-    (
-        "A:B:C",
-        "Binary(operator=: left=Binary(operator=: left=A right=B) right=C)",
-    ),
+    ("A:B:C", "Binary(operator=: left=Binary(operator=: left=A right=B) right=C)"),
     ("-A:B", "Unary(operator=- operand=Binary(operator=: left=A right=B))"),
     (
         "{X 1,Y[] -2.5}",
@@ -188,28 +170,19 @@ SIMPLE = [
         "ANOUT ON A=B DELAY=3",
         "SignalOn(keyword=ANOUT assignment=Assignment(target=A value=B) delay=3)",
     ),
-    (
-        'MOVE_EMI A "B" FLT 3',
-        "EmilyMotion(device=A action=StringLiteral(text=B) number=3)",
-    ),
+    ('MOVE_EMI A "B" FLT 3', "EmilyMotion(device=A action=StringLiteral(text=B) number=3)"),
 ]
 
 MOTIONS = [
     ("PTP P", "kind=PTP target=P values=[] criteria=[]"),
     ("LIN P C_DIS c_ori", "kind=LIN target=P values=[] criteria=[C_DIS C_ORI]"),
-    (
-        "CIRC A,B,CA 90 C_DIS",
-        "kind=CIRC auxiliary=A target=B angle=90 values=[] criteria=[C_DIS]",
-    ),
+    ("CIRC A,B,CA 90 C_DIS", "kind=CIRC auxiliary=A target=B angle=90 values=[] criteria=[C_DIS]"),
     (
         "LIN_REL P C_VEL #TOOL",
         "kind=LIN_REL target=P values=[] criteria=[C_VEL] reference=EnumConstant(name=TOOL)",
     ),
     ("ASYPTP P", "kind=ASYPTP target=P values=[] criteria=[]"),
-    (
-        "LIN A:B",
-        "kind=LIN target=Binary(operator=: left=A right=B) values=[] criteria=[]",
-    ),
+    ("LIN A:B", "kind=LIN target=Binary(operator=: left=A right=B) values=[] criteria=[]"),
     (
         "SLIN P WITH V=1, W=2 C_SPL",
         "kind=SLIN target=P values=[Assignment(target=V value=1) Assignment(target=W value=2)] "
@@ -232,34 +205,19 @@ def test_statements_of_one_line(text: str, expected: str) -> None:
 
 BLOCKS = [
     ("IF A THEN|HALT|ENDIF", "If(condition=A body=[Halt()])"),
-    (
-        "IF A THEN|ELSE||HALT|EXIT|ENDIF",
-        "If(condition=A body=[] otherwise=[Halt() Exit()])",
-    ),
+    ("IF A THEN|ELSE||HALT|EXIT|ENDIF", "If(condition=A body=[] otherwise=[Halt() Exit()])"),
     ("IF A THEN|ELSE|ENDIF", "If(condition=A body=[] otherwise=[])"),
-    (
-        "FOR I=1 TO N|HALT|ENDFOR",
-        "For(counter=I first=1 last=N body=[Halt()])",
-    ),
-    (
-        "FOR I=1 TO N STEP 2|ENDFOR",
-        "For(counter=I first=1 last=N step=2 body=[])",
-    ),
+    ("FOR I=1 TO N|HALT|ENDFOR", "For(counter=I first=1 last=N body=[Halt()])"),
+    ("FOR I=1 TO N STEP 2|ENDFOR", "For(counter=I first=1 last=N step=2 body=[])"),
     ("WHILE A|HALT|ENDWHILE", "While(condition=A body=[Halt()])"),
     ("REPEAT|HALT|UNTIL A", "Repeat(body=[Halt()] condition=A)"),
-    (
-        "LOOP|LOOP|EXIT|ENDLOOP|ENDLOOP",
-        "Loop(body=[Loop(body=[Exit()])])",
-    ),
+    ("LOOP|LOOP|EXIT|ENDLOOP|ENDLOOP", "Loop(body=[Loop(body=[Exit()])])"),
     (
         "SWITCH A|CASE 1,B|HALT|CASE #C|DEFAULT|EXIT|ENDSWITCH",
         "Switch(selector=A branches=[CaseBranch(values=[1 B] body=[Halt()]) "
         "CaseBranch(values=[EnumConstant(name=C)] body=[])] default=[Exit()])",
     ),
-    (
-        "SWITCH A|CASE 1|ENDSWITCH",
-        "Switch(selector=A branches=[CaseBranch(values=[1] body=[])])",
-    ),
+    ("SWITCH A|CASE 1|ENDSWITCH", "Switch(selector=A branches=[CaseBranch(values=[1] body=[])])"),
     (
         "SPLINE WITH V=1|SPL P|TIME_BLOCK START|TIME_BLOCK PART=3|CONST_VEL END=4 ONSTART"
         "|STOP WHEN PATH=5 IF A|ENDSPLINE C_SPL",
@@ -268,10 +226,7 @@ BLOCKS = [
         "TimeBlock(edge=PART value=3) ConstantVelocity(edge=END place=4 on_start) "
         "StopWhen(place=5 condition=A)] is_approximated)",
     ),
-    (
-        "PTP_SPLINE|ENDSPLINE",
-        "SplineBlock(keyword=PTP_SPLINE values=[] items=[])",
-    ),
+    ("PTP_SPLINE|ENDSPLINE", "SplineBlock(keyword=PTP_SPLINE values=[] items=[])"),
 ]
 
 
@@ -310,10 +265,7 @@ DECLARATIONS = [
         "EXTFCTP CHAR[8] F()",
         "External(keyword=EXTFCTP result=TypeName(name=CHAR indices=[8]) name=F parameters=[])",
     ),
-    (
-        "CHANNEL :A :B C",
-        "ChannelDefinition(name=A interface=B description=C)",
-    ),
+    ("CHANNEL :A :B C", "ChannelDefinition(name=A interface=B description=C)"),
     (
         "IMPORT INT A IS /R1/D..B",
         "Importation(type=INT declarator=Declarator(name=A) path=[R1 D] source=B)",

@@ -212,14 +212,7 @@ def test_comments_behind_code_keep_their_column() -> None:
         "  HALT ;d",
         "  zz = 1\t;e",
         "ENDLOOP ;f ",
-    ] == in_routine(
-        "LOOP       ;a",
-        "x=1      ;b",
-        "yy=12 ;c",
-        "HALT;d",
-        "zz=1\t;e",
-        "ENDLOOP ;f ",
-    )
+    ] == in_routine("LOOP       ;a", "x=1      ;b", "yy=12 ;c", "HALT;d", "zz=1\t;e", "ENDLOOP ;f ")
 
 
 # -------------------------------------------------------------------------------- what stays

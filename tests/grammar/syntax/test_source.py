@@ -96,11 +96,9 @@ def test_comments_are_where_they_say(text: str) -> None:
 
 def test_folds_nest() -> None:
     """Folds come in the order of their first lines, each with its level."""
-    assert [
-        Fold("a", 1, 6, None),
-        Fold("b c", 2, 3, None),
-        Fold("", 4, 5, None),
-    ] == folds(";FOLD a", "; fold  b c ", " ;ENDFOLD (b)", ";FOLD", ";endfold", ";ENDFOLD")
+    assert [Fold("a", 1, 6, None), Fold("b c", 2, 3, None), Fold("", 4, 5, None)] == folds(
+        ";FOLD a", "; fold  b c ", " ;ENDFOLD (b)", ";FOLD", ";endfold", ";ENDFOLD"
+    )
 
 
 def test_folds_that_do_not_match() -> None:

@@ -4,15 +4,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from grammar.notation.edits import (
-    AddAlternative,
-    AddRule,
-    Edit,
-    Insert,
-    MakeOptional,
-    Widen,
-    apply,
-)
+from grammar.notation.edits import AddAlternative, AddRule, Edit, Insert, MakeOptional, Widen, apply
 from grammar.notation.g4 import read
 from recovery.clustering.cause import Cause, Rivals
 from recovery.clustering.completion import completed, continued

@@ -37,9 +37,7 @@ def test_the_same_word_or_phrase_is_one_thing() -> None:
     assert are_one_change(LAYOUT, brake[:1], brake[1:])
     new = AddToken("C_VEL")
     assert are_one_change(
-        LAYOUT,
-        [new, Insert("motion", (1, 3), "C_VEL?")],
-        [new, Widen("motion", (2, 3), "C_VEL")],
+        LAYOUT, [new, Insert("motion", (1, 3), "C_VEL?")], [new, Widen("motion", (2, 3), "C_VEL")]
     )
     assert not are_one_change(LAYOUT, brake[:1], [AddAlternative("simpleStatement", "HALT")])
 

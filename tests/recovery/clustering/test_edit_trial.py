@@ -71,10 +71,7 @@ EDITS: dict[str, Sequence[Edit]] = {
     "alternative of rules": [AddAlternative("simpleStatement", "variable literal")],
     "alternative that begins others": [AddAlternative("simpleStatement", "RETURN INTEGER")],
     "empty alternative": [MakeOptional("exit", (1, 1))],
-    "keyword": [
-        AddToken("STEP"),
-        Insert("forStatement", (1, 7), "(STEP expression)?"),
-    ],
+    "keyword": [AddToken("STEP"), Insert("forStatement", (1, 7), "(STEP expression)?")],
     "keyword that was a name": [AddToken("STEP"), AddAlternative("simpleStatement", "STEP")],
     "two keywords": [
         AddToken("C_VEL"),

@@ -104,10 +104,7 @@ def test_a_rule_gives_itself(grammar: Grammar, writer: FormWriter, rule: str) ->
 
 @pytest.mark.parametrize(
     ("lines", "form"),
-    [
-        (["PAIR A", "PAIR B[1]"], "PAIR NAME index?"),
-        (["PAIR A", "PAIR B.C[1]"], "PAIR variable"),
-    ],
+    [(["PAIR A", "PAIR B[1]"], "PAIR NAME index?"), (["PAIR A", "PAIR B.C[1]"], "PAIR variable")],
 )
 def test_a_name_with_an_index(writer: FormWriter, lines: list[str], form: str) -> None:
     """What is a name, with an index or without, is not written as a whole variable."""

@@ -15,10 +15,7 @@ NO_WHILE = apply(PRELIMINARY, [RemoveAlternative("statement", 4), RemoveRule("wh
 
 
 def blocks(
-    opener: str,
-    *bodies: str,
-    meant: frozenset[str] = frozenset(),
-    grammar: Grammar = NO_WHILE,
+    opener: str, *bodies: str, meant: frozenset[str] = frozenset(), grammar: Grammar = NO_WHILE
 ) -> list[str]:
     profile = GrammarProfile(Recognizer(grammar))
     finder = BlockFinder(profile, Aligner(Phraser(profile)))

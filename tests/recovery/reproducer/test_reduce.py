@@ -40,11 +40,7 @@ class Bench:
         return wider
 
     def reduce(
-        self,
-        text: str,
-        *meant: str,
-        edits: Sequence[Edit] = (),
-        words: int = 24,
+        self, text: str, *meant: str, edits: Sequence[Edit] = (), words: int = 24
     ) -> Reproducer:
         """The reproducer of the first failure; the words given are suspected keywords."""
         failure = self.first(text)

@@ -8,11 +8,7 @@ from grammar.notation import g4
 from grammar.notation.edits import Edit, RemoveAlternative, RemoveRule, apply
 from grammar.notation.model import Grammar
 from grammar.parser.lexer import lexer_of
-from recovery.survey.unreserved_keywords import (
-    UnreservedKeyword,
-    UnreservedKeywords,
-    names_used,
-)
+from recovery.survey.unreserved_keywords import UnreservedKeyword, UnreservedKeywords, names_used
 
 PRELIMINARY = g4.read_file(Path(g4.__file__).parents[1].joinpath("preliminary.g4"))
 
