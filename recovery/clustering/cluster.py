@@ -232,31 +232,7 @@ def _assembled(
             failures[number].add(file, failed)
         wanted = frozenset(causes_of)
         needs.append(_Need(file, lines, shared.setdefault(wanted, wanted)))
-    alone: Counter[int] = Counter()
-    for need in needs:
-        if len(need.causes) == 1:
-            alone[next(iter(need.causes))] += len(need.file.places)
-    rules = [groups.signatures[n].rule for n in heaviest]
-    signatures = _distinct([groups.signatures[n].text for n in heaviest], rules)
-    writer = TitleWriter(groups.recognizer)
-    titles = writer.distinguished(
-        [_title(cause, n, groups, writer) for cause, n in zip(causes, heaviest, strict=True)],
-        [groups.lines[n] for n in heaviest],
-        rules,
-    )
-    clusters = [
-        _cluster(
-            cause,
-            heaviest[number],
-            signatures[number],
-            titles[number],
-            failures[number],
-            alone[number],
-            groups,
-            needs,
-        )
-        for number, cause in enumerate(causes)
-    ]
+    clusters = list(_clusters(groups, causes, heaviest, failures, needs))
     parsed = _places(found.files) - _places(found.failing)
     order = _mending_order(parsed, needs, clusters)
     by_rank = sorted(
@@ -277,6 +253,47 @@ def _assembled(
         groups.lines,
         tuple(groups.contexts),
     )
+
+
+def _clusters(
+    groups: _FailingLines,
+    causes: Sequence[Cause],
+    heaviest: Sequence[int],
+    failures: Sequence[_Failures],
+    needs: Sequence[_Need],
+) -> Iterator[Cluster]:
+    """Yield the cluster of each cause; its ``heaviest`` line represents it."""
+    alone: Counter[frozenset[int]] = Counter()
+    for need in needs:
+        alone[need.causes] += len(need.file.places)
+    rules = [groups.signatures[n].rule for n in heaviest]
+    signatures = _distinct([groups.signatures[n].text for n in heaviest], rules)
+    writer = TitleWriter(groups.recognizer)
+    titles = writer.distinguished(
+        [_title(cause, n, groups, writer) for cause, n in zip(causes, heaviest, strict=True)],
+        [groups.lines[n] for n in heaviest],
+        rules,
+    )
+    for number, (cause, line) in enumerate(zip(causes, heaviest, strict=True)):
+        mended = [proposal.mended | {_FailingLines.FOLLOWS} for proposal in cause.proposals]
+        yield Cluster(
+            id="c-" + hashlib.sha256(signatures[number].encode()).hexdigest()[:8],
+            signature=signatures[number],
+            title=titles[number],
+            context=groups.contexts[groups.specimens[line].failed.form],
+            line=groups.lines[line],
+            example=groups.specimens[line],
+            others=failures[number].others,
+            failures=failures[number].count,
+            following=failures[number].following,
+            files=failures[number].files,
+            unlocks=alone[frozenset([number])],
+            proposals=cause.proposals,
+            restores=tuple(
+                tuple(need.file for need in needs if lines.issuperset(need.lines))
+                for lines in mended
+            ),
+        )
 
 
 class _Need(NamedTuple):
@@ -358,45 +375,8 @@ def _title(cause: Cause, number: int, groups: _FailingLines, writer: TitleWriter
     )
 
 
-def _cluster(
-    cause: Cause,
-    heaviest: int,
-    signature: str,
-    title: str,
-    failures: _Failures,
-    unlocks: int,
-    groups: _FailingLines,
-    needs: Sequence[_Need],
-) -> Cluster:
-    example = groups.specimens[heaviest]
-    return Cluster(
-        id=_identity(signature),
-        signature=signature,
-        title=title,
-        context=groups.contexts[example.failed.form],
-        line=groups.lines[heaviest],
-        example=example,
-        others=failures.others,
-        failures=failures.count,
-        following=failures.following,
-        files=failures.files,
-        unlocks=unlocks,
-        proposals=cause.proposals,
-        restores=tuple(
-            tuple(need.file for need in needs if mended.issuperset(need.lines))
-            for mended in (
-                proposal.mended | {_FailingLines.FOLLOWS} for proposal in cause.proposals
-            )
-        ),
-    )
-
-
 def _places(files: Iterable[SurveyedFile]) -> int:
     return sum(len(file.places) for file in files)
-
-
-def _identity(signature: str) -> str:
-    return "c-" + hashlib.sha256(signature.encode()).hexdigest()[:8]
 
 
 def _distinct(texts: Sequence[str], rules: Sequence[str]) -> list[str]:
