@@ -12,7 +12,6 @@ from __future__ import annotations
 import random
 from collections import defaultdict
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
-from functools import partial
 from itertools import cycle, islice, zip_longest
 
 from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
@@ -249,30 +248,16 @@ def _changed(program: list[str], site: tuple[int, SourceToken], new: str) -> lis
     return _replaced(program, number, f"{text[: token.start]}{new}{text[token.end :]}")
 
 
-def _without(wanted: Container[str] | None = None) -> _Mutation:
-    """Return the mutation that removes one of the wanted words, or any token."""
+def _exchanged(
+    new: Callable[[str, random.Random], str], wanted: Container[str] | None = None
+) -> _Mutation:
+    """Return the mutation that puts a new text for one of the wanted words, or for any token."""
 
-    def without(program: list[str], chance: random.Random) -> list[str] | None:
+    def exchanged(program: list[str], chance: random.Random) -> list[str] | None:
         site = _site(program, chance, wanted)
-        return site and _changed(program, site, "")
+        return site and _changed(program, site, new(site[1].text, chance))
 
-    return without
-
-
-def _swapped_sign(program: list[str], chance: random.Random) -> list[str] | None:
-    """Return the program with ``=`` for ``==``, a closing bracket for an opening one, or back."""
-    site = _site(program, chance, _SWAPPED)
-    return site and _changed(program, site, f" {_SWAPPED[site[1].text]} ")
-
-
-def _other_bracket(program: list[str], chance: random.Random) -> list[str] | None:
-    site = _site(program, chance, _BRACKETS)
-    return site and _changed(program, site, chance.choice(_BRACKETS))
-
-
-def _doubled_token(program: list[str], chance: random.Random) -> list[str] | None:
-    site = _site(program, chance)
-    return site and _changed(program, site, f"{site[1].text} {site[1].text}")
+    return exchanged
 
 
 def _second_equals(program: list[str], chance: random.Random) -> list[str] | None:
@@ -280,11 +265,6 @@ def _second_equals(program: list[str], chance: random.Random) -> list[str] | Non
     values = [(n, t) for n, t in _tokens(program) if t.kind in ("name", "number", "truth")]
     site = chance.choice(values) if values else None
     return site and _changed(program, site, f"{chance.choice(('', 'COUNT '))}= {site[1].text}")
-
-
-def _inserted(some: Sequence[str], program: list[str], chance: random.Random) -> list[str] | None:
-    site = _site(program, chance)
-    return site and _changed(program, site, f"{site[1].text} {chance.choice(some)} ")
 
 
 def _tail(program: list[str], chance: random.Random) -> list[str] | None:
@@ -310,9 +290,11 @@ def _swapped_tokens(program: list[str], chance: random.Random) -> list[str] | No
     return _replaced(program, number, turned)
 
 
+#: ``=`` for ``==``, a closing bracket for an opening one, or back.
+_swapped_sign = _exchanged(lambda text, _: f" {_SWAPPED[text]} ", _SWAPPED)
 # Mutations that reveal most about a grammar are more frequent.
 _MUTATIONS: tuple[_Mutation, ...] = (
-    *[_without(_NEEDED)] * 8,
+    *[_exchanged(lambda _text, _: "", _NEEDED)] * 8,
     *[_other_module] * 3,
     _operand_as_parameter,
     *[_joined_lines, _other_closer, _stray_line, _swapped_sign, _second_equals, _tail] * 2,
@@ -322,12 +304,12 @@ _MUTATIONS: tuple[_Mutation, ...] = (
     _crossed_lines,
     _line_behind_end,
     _split_line,
-    _without(_BRACKETS),
-    _other_bracket,
-    _without(),
-    _doubled_token,
-    partial(_inserted, _SIGNS),
-    partial(_inserted, _WORDS),
+    _exchanged(lambda _text, _: "", _BRACKETS),
+    _exchanged(lambda _text, chance: chance.choice(_BRACKETS), _BRACKETS),
+    _exchanged(lambda _text, _: ""),
+    _exchanged(lambda text, _: f"{text} {text}"),
+    _exchanged(lambda text, chance: f"{text} {chance.choice(_SIGNS)} "),
+    _exchanged(lambda text, chance: f"{text} {chance.choice(_WORDS)} "),
     _word_as_name,
     _swapped_tokens,
 )
