@@ -10,8 +10,7 @@ import shutil
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,18 +27,7 @@ from grammar.syntax.source import Source
 from support.files.discovery import Found, IngestError, Skipped, discover, read_source
 from support.gc_pause import gc_paused
 from support.measure.isolated import call_isolated
-from support.measure.speed import MB, ROUNDS, machine, peak_mb, shares
-
-PHASES = (
-    "loading",
-    "decoding",
-    "parsing",
-    "building",
-    "tables",
-    "linking",
-    "resolving",
-    "checking",
-)
+from support.measure.speed import MB, ROUNDS, Clock, machine, peak_mb, shares
 
 
 def measure_check(
@@ -135,27 +123,10 @@ def _one_changed(roots: Sequence[Path]) -> float | None:
         return float(call_isolated(_timed, copies, cache)["seconds"])
 
 
-class _Clock:
-    """Seconds by phase."""
-
-    def __init__(self) -> None:
-        self.seconds = dict.fromkeys(PHASES, 0.0)
-
-    @contextmanager
-    def during(self, phase: str) -> Iterator[None]:
-        began = time.perf_counter()
-        yield
-        self.seconds[phase] += time.perf_counter() - began
-
-
+@gc_paused()
 def _phased(roots: Sequence[Path]) -> dict[str, float]:
     """Seconds of each phase; all trees are kept at once, which a check of large corpora avoids."""
-    with gc_paused():
-        return _phases(roots)
-
-
-def _phases(roots: Sequence[Path]) -> dict[str, float]:
-    clock = _Clock()
+    clock = Clock()
     with clock.during("loading"):
         ours, system = builder(), System.load()
     files = []

@@ -12,7 +12,6 @@ import tempfile
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,7 @@ from recovery.survey.survey import Survey, survey
 from support.files.decode import Decoded, decode
 from support.files.discovery import Found, IngestError, discover, read, source_files
 from support.measure.isolated import call_isolated
-from support.measure.speed import MB, ROUNDS, machine, shares
+from support.measure.speed import MB, ROUNDS, Clock, machine, shares
 
 #: What ANTLR's Python runtime reads in a second on a slow machine. The bytes it is given are fixed
 #: with it beforehand, so that they are the same in every run and on every machine.
@@ -155,39 +154,29 @@ def _phased(roots: Sequence[Path], grammar_text: str) -> dict[str, float]:
     ``failures`` is what finding all of them costs beyond lexing and recognising once. The rest of
     what a survey takes, ``recording``, is keeping what was found.
     """
-    clock = time.perf_counter
+    clock = Clock()
     gc.collect()
-    times = [clock()]
-    read_now = (read(found) for found in discover(roots) if isinstance(found, Found))
-    contents = dict.fromkeys(data for data in read_now if isinstance(data, bytes))
-    times.append(clock())
-    texts = [one.text for one in map(decode, contents) if isinstance(one, Decoded)]
-    times.append(clock())
-    recognizer = Recognizer(g4.read(grammar_text))
-    finder = FailureFinder(recognizer)
-    times.append(clock())
-    kinds = [recognizer.kinds(text) for text in texts]
-    times.append(clock())
-    for tokens in kinds:
-        recognizer.run(recognizer.start, tokens)
-    times.append(clock())
-    for text in texts:
-        recognizer.accepts(text)
-    times.append(clock())
-    for text in texts:
-        finder.find(text)
-    times.append(clock())
-    reading, decoding, building, lexing, recognising, warm, finding = (
-        after - before for before, after in pairwise(times)
-    )
-    return {
-        "reading": reading,
-        "decoding": decoding,
-        "building": building,
-        "lexing": lexing,
-        "recognising": recognising,
-        "failures": max(finding - warm, 0.0),
-    }
+    with clock.during("reading"):
+        read_now = (read(found) for found in discover(roots) if isinstance(found, Found))
+        contents = dict.fromkeys(data for data in read_now if isinstance(data, bytes))
+    with clock.during("decoding"):
+        texts = [one.text for one in map(decode, contents) if isinstance(one, Decoded)]
+    with clock.during("building"):
+        recognizer = Recognizer(g4.read(grammar_text))
+        finder = FailureFinder(recognizer)
+    with clock.during("lexing"):
+        kinds = [recognizer.kinds(text) for text in texts]
+    with clock.during("recognising"):
+        for tokens in kinds:
+            recognizer.run(recognizer.start, tokens)
+    with clock.during("again"):
+        for text in texts:
+            recognizer.accepts(text)
+    with clock.during("failures"):
+        for text in texts:
+            finder.find(text)
+    again = clock.seconds.pop("again")
+    return {**clock.seconds, "failures": max(clock.seconds["failures"] - again, 0.0)}
 
 
 # ------------------------------------------------------------------------------ beside ANTLR

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Mapping
+import time
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, Final
 
 from support.measure.peak_memory import peak_memory
@@ -33,3 +36,17 @@ def shares(phases: Mapping[str, float]) -> list[dict[str, Any]]:
         {"name": name, "seconds": seconds, "share": seconds / total}
         for name, seconds in phases.items()
     ]
+
+
+class Clock:
+    """Seconds by phase, in the order of their first beginnings."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = defaultdict(float)
+
+    @contextmanager
+    def during(self, phase: str) -> Iterator[None]:
+        """Add the time of the context to a phase."""
+        began = time.perf_counter()
+        yield
+        self.seconds[phase] += time.perf_counter() - began

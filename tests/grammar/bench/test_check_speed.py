@@ -5,8 +5,10 @@ from pathlib import Path
 import pytest
 
 from grammar.bench import check_speed
-from grammar.bench.check_speed import PHASES, measure_check, steps
+from grammar.bench.check_speed import measure_check, steps
 from support.files.discovery import IngestError
+
+PHASES = "loading decoding parsing building tables linking resolving checking"
 
 
 @pytest.fixture(autouse=True)
@@ -27,7 +29,7 @@ def test_record(tmp_path: Path) -> None:
     assert (1, len(text), 1) == (record["files"], record["bytes"], record["projects"])
     assert {"warning": 1} == record["findings"]
     assert record["seconds"] == pytest.approx(record["s_per_mb"] * len(text) / 1e6)
-    assert list(PHASES) == [phase["name"] for phase in record["phases"]]
+    assert PHASES.split() == [phase["name"] for phase in record["phases"]]
     assert 1 == pytest.approx(sum(phase["share"] for phase in record["phases"]))
     assert all(phase["seconds"] > 0 for phase in record["phases"])
     assert min(record["unchanged_s_per_mb"], record["one_changed_seconds"]) > 0
