@@ -130,8 +130,7 @@ def _too_large(grammar: Grammar) -> str | None:
                 else len(element.ranges)
                 if isinstance(element, CharSet)
                 else size(element.name)
-                for alternative in grammar.by_name[name].alternatives
-                for element in walk(alternative)
+                for element in walk(grammar.by_name[name])
                 if isinstance(element, Literal | CharSet | Reference)
             )
         return sizes[name]

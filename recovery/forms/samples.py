@@ -62,7 +62,7 @@ def _is_expanded(rules: OperandRules, name: str, within: frozenset[str]) -> bool
     is_level = name in rules.ladder and name in rules.reaches[name]
     if is_level or name in within or name in rules.bracketed.values():
         return False
-    inner = (e for a in rules.grammar.by_name[name].alternatives for e in walk(a))
+    inner = walk(rules.grammar.by_name[name])
     return rules.is_part(name) or any(isinstance(e, Literal) and e.text == "," for e in inner)
 
 

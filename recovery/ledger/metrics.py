@@ -9,19 +9,20 @@ however its own rule is written. ``EOF`` is no symbol.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import cache
 from math import log2
 
 from grammar.notation.model import (
-    Alternative,
     Element,
     Grammar,
     Group,
     Literal,
     Reference,
     Repeat,
+    Rule,
     reached,
+    walk,
 )
 from recovery.ledger.lookahead import decisions, share_decided
 
@@ -68,15 +69,15 @@ def metrics(grammar: Grammar) -> Mapping[str, float]:
 
     Lookahead: DEC decisions, LL1 and LL2 the shares of them that one token, or at most two, decide.
     """
-    uses = {r.name: r.alternatives for r in grammar.parser_rules}
+    uses = {rule.name: rule for rule in grammar.parser_rules}
     operators: Counter[str] = Counter()
     symbols: Counter[str] = Counter()
     calls: dict[str, set[str]] = {}
-    for name, alternatives in uses.items():
-        written = Counter(_symbols(grammar, alternatives))
+    for name, rule in uses.items():
+        written = Counter(_symbols(grammar, rule))
         symbols += written
         calls[name] = {symbol for symbol in written if symbol in uses}
-        operators += Counter(_operators(alternatives))
+        operators += Counter(_operators(rule))
     choices = decisions(grammar)
     values = {
         "TERM": sum(symbol not in uses for symbol in symbols),
@@ -92,32 +93,22 @@ def metrics(grammar: Grammar) -> Mapping[str, float]:
     return {name: round(float(values[name]), _PLACES) for name in MEANINGS}
 
 
-def _symbols(grammar: Grammar, alternatives: Sequence[Alternative]) -> Iterator[str]:
+def _symbols(grammar: Grammar, rule: Rule) -> Iterator[str]:
     """Yield every symbol of a right-hand side, as often as it is written."""
-    for alternative in alternatives:
-        for element in alternative.elements:
-            inner: Element = element
-            while isinstance(inner, Repeat):
-                inner = inner.item
-            if isinstance(inner, Group):
-                yield from _symbols(grammar, inner.alternatives)
-            elif isinstance(inner, Reference | Literal) and not _is_end(inner):
-                yield grammar.token_of(inner)
+    for element in walk(rule):
+        if isinstance(element, Reference | Literal) and not _is_end(element):
+            yield grammar.token_of(element)
 
 
-def _operators(alternatives: Sequence[Alternative]) -> Iterator[str]:
+def _operators(rule: Rule) -> Iterator[str]:
     """Yield every operator of a right-hand side: ``|?*+``, ``sequence`` or ``empty``."""
-    yield from "|" * (len(alternatives) - 1)
-    for alternative in alternatives:
-        elements = [e for e in alternative.elements if not _is_end(e)]
-        yield from ["sequence"] * (len(elements) - 1) if elements else ["empty"]
-        for element in elements:
-            inner: Element = element
-            while isinstance(inner, Repeat):
-                yield inner.operator
-                inner = inner.item
-            if isinstance(inner, Group):
-                yield from _operators(inner.alternatives)
+    elements = list(walk(rule))
+    yield from (element.operator for element in elements if isinstance(element, Repeat))
+    for choice in (rule, *(element for element in elements if isinstance(element, Group))):
+        yield from "|" * (len(choice.alternatives) - 1)
+        for alternative in choice.alternatives:
+            count = sum(not _is_end(element) for element in alternative.elements)
+            yield from ["sequence"] * (count - 1) if count else ["empty"]
 
 
 def _is_end(element: Element) -> bool:

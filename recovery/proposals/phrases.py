@@ -133,8 +133,7 @@ class Phraser:
 
     def _repeats(self, rule: str) -> bool:
         """Return whether a rule repeats a part."""
-        alternatives = self.profile.grammar.by_name[rule].alternatives
-        elements = (e for a in alternatives for e in walk(a))
+        elements = walk(self.profile.grammar.by_name[rule])
         return any(isinstance(e, Repeat) and e.operator != "?" for e in elements)
 
     def stands_for_a_rule(self, span: Sequence[Token], *, is_listed: bool) -> bool:
