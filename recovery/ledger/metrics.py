@@ -104,7 +104,9 @@ def _operators(rule: Rule) -> Iterator[str]:
     """Yield every operator of a right-hand side: ``|?*+``, ``sequence`` or ``empty``."""
     elements = list(walk(rule))
     yield from (element.operator for element in elements if isinstance(element, Repeat))
-    for choice in (rule, *(element for element in elements if isinstance(element, Group))):
+    choices: list[Rule | Group] = [rule]
+    choices.extend(element for element in elements if isinstance(element, Group))
+    for choice in choices:
         yield from "|" * (len(choice.alternatives) - 1)
         for alternative in choice.alternatives:
             count = sum(not _is_end(element) for element in alternative.elements)
