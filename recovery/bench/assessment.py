@@ -8,6 +8,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,6 @@ from grammar.notation.model import Grammar, referred
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from recovery.bench.mutation import Mutant
-from recovery.clustering.cause import NegativeCounter
 from recovery.clustering.cluster import Clusters, cluster
 from recovery.clustering.edit_merging import combined_edits
 from recovery.clustering.edit_trial import edited
@@ -61,7 +61,7 @@ class Assessment:
     seconds: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class BenchMaterial:
     """What mutants are assessed on.
 
@@ -74,41 +74,39 @@ class BenchMaterial:
     held_out: tuple[str, ...]
     negatives: tuple[Negative, ...]
 
+    @cached_property
+    def rejected(self) -> NegativeSet:
+        """The negatives that the grammar rejects."""
+        return NegativeSet(self.negatives).rejected_by(Recognizer(self.grammar))
 
-def assess(
-    mutant: Mutant,
-    whole: Grammar,
-    shown: Sequence[tuple[str, str]],
-    held_out: Sequence[str],
-    count_negatives: Callable[[Grammar], NegativeCounter],
-    negatives: Callable[[Recognizer], int],
-) -> Assessment:
-    """Survey ``shown`` (path, text) under the mutant and see how the tool does.
 
-    - detected: some program that ``whole`` reads fails, or the lost keyword is suspected
+def assess(mutant: Mutant, material: BenchMaterial) -> Assessment:
+    """Survey the programs shown under the mutant and see how the tool does.
+
+    - detected: some program that the grammar reads fails, or the lost keyword is suspected
       (`recovery.survey.unreserved_keywords`) where it is read as a name.
     - rule_rank, item_rank: the first of the proposals of all clusters, taken in the order of the
       page, whose edit is in the right rule, or at the right place.
-    - repair_rank: the first after which all of ``shown`` and of ``held_out`` can be read again.
+    - repair_rank: the first after which all of the programs can be read again, shown or held out.
       Where several parts are missing no one proposal does that: it is 1 if the best proposals of
       all clusters do so together; else the clusters are gone through in the order of the page, of
       each the proposal is taken (the first of equals among five) after which most of the failing
       texts can be read, of a cluster none whose lines can be read already, and the rank is that
       of the deepest proposal taken: so far down one has to look in each cluster.
-    - false_accepts: negatives the best proposal accepts that ``whole`` rejects.
+    - false_accepts: negatives the best proposal accepts that the grammar rejects.
     - seconds: of processor time, for the survey and the search.
     """
     began = time.process_time()
-    found = survey_texts(shown, mutant.grammar)
+    found = survey_texts(material.shown, mutant.grammar)
     failing = [f for f in found.files if f.failures]
     if not failing:
         noticed = any(one.word in mutant.keywords for one in found.unreserved)
         seconds = time.process_time() - began
         return Assessment(mutant, noticed, None, None, None, int(noticed), 0, (), seconds)
-    texts_of = dict(shown)
+    texts_of = dict(material.shown)
     clusters = cluster(
         found,
-        count_negatives=count_negatives(mutant.grammar),
+        count_negatives=negative_counter(mutant.grammar, material.negatives),
         text_of=lambda file: texts_of[file.digest],
     )
     seconds = time.process_time() - began
@@ -120,18 +118,18 @@ def assess(
         reproducer = reducer.reduce(entry.line, entry.example.failed.words)
         if reproducer is not None:
             tokens.append(reproducer.beyond)
-    texts = [text for _, text in shown] + list(held_out)
+    texts = [*texts_of.values(), *material.held_out]
     best = edited(base, ordered[0]) if ordered else None
     return Assessment(
         mutant,
         True,
-        _rank(ordered, lambda edits: _names(edits, mutant, whole)),
+        _rank(ordered, lambda edits: _names(edits, mutant, material.grammar)),
         _rank(ordered, lambda edits: _same_place(edits, mutant)),
         _rank(ordered, lambda edits: _repairs(base, edits, texts))
         if mutant.parts == 1
         else _repaired_together(base, clusters, texts),
         len(clusters.ranked),
-        0 if best is None else negatives(best),
+        0 if best is None else len(material.rejected.accepted(best)),
         tuple(tokens),
         seconds,
     )
@@ -316,45 +314,27 @@ def assess_all(
 def _assessed(
     material: BenchMaterial, chosen: Sequence[Mutant], numbers: Sequence[int], jobs: int
 ) -> Iterator[Assessment]:
-    if jobs == 1 and numbers:
-        yield from map(_Assessor(material), map(chosen.__getitem__, numbers))
-    elif numbers:
+    mutants = [chosen[number] for number in numbers]
+    if jobs == 1:
+        yield from (assess(mutant, material) for mutant in mutants)
+    elif mutants:
         with process_pool(jobs, _prepare, material) as pool:
-            yield from pool.map(_assess, [chosen[number] for number in numbers])
+            yield from pool.map(_assess, mutants)
 
 
 def _digest(*given: object) -> str:
     return hashlib.sha256(repr(given).encode()).hexdigest()
 
 
-class _Assessor:
-    """Assesses mutants of one grammar."""
-
-    def __init__(self, material: BenchMaterial) -> None:
-        self.material = material
-        self.rejected = NegativeSet(material.negatives).rejected_by(Recognizer(material.grammar))
-
-    def __call__(self, mutant: Mutant) -> Assessment:
-        material = self.material
-        return assess(
-            mutant,
-            material.grammar,
-            material.shown,
-            material.held_out,
-            lambda damaged: negative_counter(damaged, material.negatives),
-            lambda recognizer: len(self.rejected.accepted(recognizer)),
-        )
-
-
-_assessors: list[_Assessor] = []  # of a worker process
+_materials: list[BenchMaterial] = []  # of a worker process
 
 
 def _prepare(material: BenchMaterial) -> None:
-    _assessors[:] = [_Assessor(material)]
+    _materials.append(material)
 
 
 def _assess(mutant: Mutant) -> Assessment:
-    return _assessors[0](mutant)
+    return assess(mutant, _materials[0])
 
 
 def _ranks(assessment: Assessment, whole: Grammar) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from recovery.bench.assessment import (
     figures,
 )
 from recovery.bench.mutation import Mutant, choose_mutants, combined, mutants
-from recovery.clustering.cause import Proposal, no_negatives
+from recovery.clustering.cause import Proposal
 from recovery.clustering.cluster import Clusters, cluster
 
 SMALL = g4.read("""grammar S;
@@ -60,6 +60,14 @@ def every() -> list[Mutant]:
     return list(mutants(SMALL))
 
 
+@pytest.fixture(scope="module")
+def material() -> BenchMaterial:
+    """Return half of the programs and the covering ones as shown, the other half as held out."""
+    shown = [*PROGRAMS[::2], *covering(SMALL)]
+    numbered = tuple((f"program {n}", text) for n, text in enumerate(shown))
+    return BenchMaterial(SMALL, numbered, tuple(PROGRAMS[1::2]), ())
+
+
 def test_every_kind_of_part_is_taken_out(every: list[Mutant]) -> None:
     """Alternatives, optional parts and keywords each give mutants, and every one is a grammar."""
     kinds = Counter(mutant.kind for mutant in every)
@@ -86,11 +94,8 @@ def test_choosing_is_by_seed() -> None:
     assert choose_mutants(SMALL, 4, 2, 7) == choose_mutants(SMALL, 4, 2, 7)
 
 
-def test_the_tool_finds_its_way_back(every: list[Mutant]) -> None:
+def test_the_tool_finds_its_way_back(every: list[Mutant], material: BenchMaterial) -> None:
     """On this small grammar an alternative or part taken out is noticed and put back."""
-    shown = [*PROGRAMS[::2], *covering(SMALL)]
-    numbered = tuple((f"program {n}", text) for n, text in enumerate(shown))
-    material = BenchMaterial(SMALL, numbered, tuple(PROGRAMS[1::2]), ())
     wanted = [m for m in every if m.kind == "alternative" and "halt" not in m.title(SMALL)]
     record = assess_all(material, wanted)
     assert record["detected"] == 1.0
@@ -121,13 +126,12 @@ def test_a_bench_goes_on_where_it_ended(
 
 
 def test_several_parts_are_ranked_by_how_deep_a_person_looks(
-    every: list[Mutant], monkeypatch: pytest.MonkeyPatch
+    every: list[Mutant], material: BenchMaterial, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The best of all clusters together are 1; else the deepest proposal that is needed counts.
 
     Without any that mends one of the clusters not everything can be read, and there is no rank.
     """
-    shown = [(f"{n}", text) for n, text in enumerate([*PROGRAMS[::2], *covering(SMALL)])]
     chosen = [
         m
         for title in ("wait: without the alternative WAIT SEC", "assignment: without ('['")
@@ -146,8 +150,7 @@ def test_several_parts_are_ranked_by_how_deep_a_person_looks(
             return replace(found, ranked=(*found.ranked[:-1], last))
 
         monkeypatch.setattr(assessment, "cluster", changed)
-        verdict = assess(mutant, SMALL, shown, PROGRAMS[1::2], lambda _: no_negatives, lambda _: 0)
-        return verdict.repair_rank
+        return assess(mutant, material).repair_rank
 
     assert 1 == rank_with(lambda found: found)
     assert 3 == rank_with(lambda found: (useless, useless, found[0]))
