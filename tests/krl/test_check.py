@@ -55,6 +55,35 @@ def test_text_has_a_caret_and_a_fix(capsys: pytest.CaptureFixture[str]) -> None:
     assert "1 file checked: 1 error\n" == err
 
 
+JOINED = """\
+A.src:4:1: note KRL701: 4 names are in no file at hand: FAR, OUTER, LOST, …; --verbose tells each
+"""
+EACH = "".join(
+    f"A.src:{line}:1: note KRL701: the routine {name} is in no file at hand; used once\n"
+    for line, name in enumerate(("FAR", "OUTER", "LOST", "GONE"), 4)
+)
+
+
+@pytest.mark.parametrize(("options", "notes"), [([], JOINED), (["--verbose"], EACH)])
+def test_errors_come_last_and_names_of_missing_files_are_one_note(
+    elsewhere: Path, capsys: pytest.CaptureFixture[str], options: list[str], notes: str
+) -> None:
+    """A single error of an incomplete backup stands above the summary, which counts all notes."""
+    body = "HALT\nEXIT\nFAR()\nOUTER()\nLOST()\nGONE()\n= 1"
+    (elsewhere / "A.src").write_text(f"DEF A()\n{body}\nEND\n", encoding="utf-8")
+    (elsewhere / "B.src").write_text("DEF B()\nAWAY()\nEND\n", encoding="utf-8")
+    assert 1 == check("--no-cache", *options, ".")
+    out, err = capsys.readouterr()
+    assert (
+        f"{notes}"
+        "B.src:2:1: note KRL701: the routine AWAY is in no file at hand; used once\n"
+        "A.src:3:1: warning KRL401: EXIT outside a loop\n"
+        'A.src:8:1: error KRL001: no line begins with "="\n'
+        == "".join(f"{line}\n" for line in out.splitlines() if ".src:" in line)
+    )
+    assert "2 files checked: 1 error, 1 warning, 5 notes" in err
+
+
 @pytest.mark.usefixtures("programs")
 @pytest.mark.parametrize(
     ("arguments", "status"),

@@ -74,7 +74,8 @@ def check(
         typer.Option(metavar="NAMES", help="Installed option packages: EKI,RSI."),
     ] = None,
     verbose: Annotated[
-        bool, typer.Option("--verbose", help="Name the rules behind findings.")
+        bool,
+        typer.Option("--verbose", help="Name rules behind findings, and each unknown name."),
     ] = False,
     fix: Annotated[
         bool, typer.Option("--fix", help="Apply safe fixes, then check the rest.")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from krl.commands.check.reading_order import reading_order
 from krl.errors import one_line
 from krl.terminal.output_files import json_list_pieces, json_pieces, write_pieces
 
@@ -49,8 +50,10 @@ def write(
 ) -> None:
     """Write findings, which are in order, to a file or the terminal.
 
-    ``is_verbose`` adds rule IDs to text.
+    ``is_verbose`` adds to text rule IDs and each name of a missing file.
     """
+    if format_ is Format.TEXT:
+        kept = reading_order(kept, is_verbose)
     if format_ is Format.TEXT and out is None:
         _print_text(kept, is_verbose)
         return
