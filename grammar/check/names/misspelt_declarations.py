@@ -176,7 +176,8 @@ def unlike_others(spelling: Spelling, used: Set[str], files: Files) -> Iterator[
                 continue
             if space is Space.ROUTINE and symbol.kind is Kind.EXTERNAL:
                 announced.append((path, symbol))
-            if space in (Space.VALUE, Space.TYPE) and (meant := spelling.meant(symbol.name)):
+            meant = spelling.meant(symbol.name) if space in (Space.VALUE, Space.TYPE) else None
+            if meant and not table.table.find(space, meant.upper()):  # nobody declares one twice
                 message = f"{symbol.name} is declared and never used"
                 reason = f"{meant} is written elsewhere"
                 yield _unused(files, path, symbol, message, reason, meant)

@@ -290,6 +290,17 @@ def test_other_names_show_which_of_two_is_misspelt(
     assert [line] == [one.region.line for one in found if one.code == "KRL101"]
 
 
+@pytest.mark.parametrize(("also", "is_told"), [("", True), (", TDEFAULT", False)])
+def test_no_slip_of_what_stands_beside_it(
+    finds: Callable[..., list[Diagnostic]], also: str, is_told: bool
+) -> None:
+    """An unused declaration is no slip of a name that the same list declares as well."""
+    files = {f"{name}.dat": f"DEFDAT {name}\nINT TDEFAULT\nENDDAT\n" for name in "AB"}
+    files["C.dat"] = f"DEFDAT C\nINT TMDEFAULT{also}\nENDDAT\n"
+    found = finds(files, is_complete=None)
+    assert ["KRL117"] * is_told == [one.code for one in found if one.severity == "warning"]
+
+
 @pytest.mark.parametrize(
     ("name", "is_told"),
     [("SUCCES", True), ("SUCCESSES", False), ("GRIPPER_OPNE3", True), ("GRIPPER_OPEN3", False)],
