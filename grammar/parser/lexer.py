@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import cached_property
-from itertools import accumulate, chain, compress
+from itertools import accumulate, compress
 
 from grammar.notation.model import (
     CharSet,
@@ -278,9 +278,10 @@ class Lexer:
             pairs = zip(self.lexemes(text), self.offsets(text), strict=True)
             tokens = [pair for pair in pairs if self.kinds[pair[0]] != SKIPPED]
             return [lexeme for lexeme, _ in tokens], [offset for _, offset in tokens]
-        found = self._located.findall(text)
-        ends = list(accumulate(map(len, chain.from_iterable(found))))
-        offsets, lexemes = ends[::2], [lexeme for _, lexeme in found]
+        pieces = self._located.split(text)  # in threes: nothing, what is skipped, the token
+        del pieces[::3]
+        ends = list(accumulate(map(len, pieces)))
+        offsets, lexemes = ends[::2], pieces[1::2]
         while lexemes and not lexemes[-1]:  # skipped text at the end of the file
             offsets.pop()
             lexemes.pop()

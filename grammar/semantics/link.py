@@ -323,12 +323,12 @@ def extended(
 
 # ------------------------------------------------------------------------------------- modules
 
-_WORD = re.compile(r";[^\r\n]*|([A-Z_$][A-Z0-9_$]*)", re.IGNORECASE)
+_WORD = re.compile(r";[^\r\n]*|([A-Z_$][A-Z0-9_$]*)")
 
 
 def words_of(text: str) -> frozenset[str]:
     """Return the names in a text outside comments, in upper case; it can declare no others."""
-    return frozenset([word.upper() for word in set(_WORD.findall(text)) if word])
+    return frozenset(_WORD.findall(text.upper())) - {""}
 
 
 def _module(file: File) -> Module:
