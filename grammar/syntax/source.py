@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cached_property
 from pathlib import PurePosixPath
 
@@ -120,13 +120,13 @@ class Source:
                 line, column = self.place(offset)
                 yield Comment(line, column, offset, found.group(1))
 
-    @cached_property
-    def _by_line(self) -> Mapping[int, Comment]:
-        return {comment.line: comment for comment in self.comments}
-
     def comment(self, line: int) -> Comment | None:
         """Return the comment of a line, whether after code or alone; a line has at most one."""
-        return self._by_line.get(line)
+        for found in _COMMENT.finditer(self.line(line)):
+            if found.group(1) is not None:
+                column = found.start() + 1
+                return Comment(line, column, self.offset(line, column), found.group(1))
+        return None
 
     # ----------------------------------------------------------------------------- folds
 
