@@ -15,7 +15,7 @@ from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind, RoutineSymbol
 from grammar.syntax import ast
 from grammar.syntax.walk import BODIES, LEAVES, PLACES, children, left_chain
-from support.lazy_dataclass import dataclass
+from support.lazy_dataclass import node
 
 #: A parameter of a routine: the path of its file, its name in upper case, an index from 0.
 Parameter = tuple[str, str, int]
@@ -30,7 +30,7 @@ class Use(Enum):
     PASSED = "passed"
 
 
-@dataclass(frozen=True, slots=True)
+@node
 class Access:
     """An access to a variable in a statement, with the node of its name.
 

@@ -211,13 +211,20 @@ class Context:
         """Return whether this file has the declaration; the module of its scope has no tree."""
         return found.module is not None and found.module.table is self.module.table
 
-    def note_bound(self, node: ast.Expression, bound: Bound) -> None:
-        """Note the values that a parameter may have, if the expression is a parameter."""
+    def note_bound(
+        self,
+        node: ast.Expression,
+        slug: str,
+        use: str,
+        low: float = -math.inf,
+        high: float = math.inf,
+    ) -> None:
+        """Note the values that a parameter may have, if the expression is one; see `Bound`."""
         node = without_parentheses(node)
         if type(node) is ast.Variable:
             found = self.found(node.name)
             if found is not None and found.symbol.kind is Kind.PARAMETER:
-                self.bounds[node.name] = bound
+                self.bounds[node.name] = Bound(slug, use, low, high)
 
     # ----------------------------------------------------------------------- findings
 

@@ -9,7 +9,6 @@ documented; therefore these are warnings.
 from __future__ import annotations
 
 from grammar.check.analysis.constant_folding import constant
-from grammar.check.analysis.context import Bound
 from grammar.check.analysis.type_checker import TypeChecker
 from grammar.semantics.scopes import Found
 from grammar.syntax import ast
@@ -48,8 +47,8 @@ def _judge(
     message = f"{shown} must be between {low:g} and {high:g}"
     value = constant(checker.context, node)
     if value is None:
-        bound = Bound("invalid-system-value", f"assigns it, and {message}", low, high)
-        checker.context.note_bound(node, bound)
+        use = f"assigns it, and {message}"
+        checker.context.note_bound(node, "invalid-system-value", use, low, high)
     elif not isinstance(value, bool | str) and not low <= value <= high:
         rules = ("MOT-02", "MOT-04", "ARI-11")
         checker.report(

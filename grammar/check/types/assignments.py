@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from grammar.check.analysis.constant_folding import constant
-from grammar.check.analysis.context import Bound
 from grammar.check.analysis.type_checker import TypeChecker
 from grammar.check.limits.motion_limits import check_motion_limit
 from grammar.semantics.predefined import SystemVariable
@@ -37,7 +36,7 @@ def _check_limits(
     low, high = limits
     message = f"{variable.name} must be between {low} and {high}"
     if value is None:
-        bound = Bound("invalid-system-value", f"assigns it, and {message}", low, high)
-        checker.context.note_bound(node.value, bound)
+        use = f"assigns it, and {message}"
+        checker.context.note_bound(node.value, "invalid-system-value", use, low, high)
     elif isinstance(value, int | float) and type(value) is not bool and not low <= value <= high:
         checker.report("invalid-system-value", node.value, message)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from grammar.check.analysis.constant_folding import constant, integer_of
-from grammar.check.analysis.context import Bound, Context
+from grammar.check.analysis.context import Context
 from grammar.check.analysis.type_checker import Rule, TypeChecker
 from grammar.check.types.aggregates import aggregate
 from grammar.check.types.calls import call
@@ -109,8 +109,8 @@ def _check_range(checker: TypeChecker, node: ast.Subscript, array: Array) -> Non
         if given is not None and place is None:
             most = math.inf if size is None else size
             reach = "" if size is None else f" to {size}"
-            bound = Bound("index-out-of-range", f"uses it as an index from 1{reach}", 1, most)
-            checker.context.note_bound(given, bound)
+            use = f"uses it as an index from 1{reach}"
+            checker.context.note_bound(given, "index-out-of-range", use, 1, most)
         if given is None or place is None or (place >= 1 and (size is None or place <= size)):
             continue
         root = root_variable(node)
@@ -198,7 +198,7 @@ def _joined(checker: TypeChecker, node: ast.Binary, left: Type) -> Type:
 def _check_divisor(checker: TypeChecker, node: ast.Expression) -> None:
     value = constant(checker.context, node)
     if value is None:
-        checker.context.note_bound(node, Bound("division-by-zero", "divides by it"))
+        checker.context.note_bound(node, "division-by-zero", "divides by it")
     elif value == 0 and type(value) is not bool:
         checker.report("division-by-zero", node, "the divisor is zero")
 
