@@ -7,7 +7,6 @@ add to it, and omitted components keep its values [MOT-14, MOT-16].
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -90,7 +89,6 @@ class Programmed:
         Relative to #TOOL, the target is a frame in the last point. Relative to #BASE, each
         component is added to that of the last point [MOT-14].
         """
-        check_finite(target)
         if has_axes(target):
             axes = self._axes(target, is_relative)
             flange = Pose.from_matrix(self.arm.forward(axes[:ROBOT_AXES]).tolist())
@@ -106,8 +104,7 @@ class Programmed:
         return tuple(one + other for one, other in zip(before, change, strict=True))
 
     def goal(self, motion: Motion, target: Target, placement: Placement) -> Goal:
-        """Return the axes of a PTP target; raise `Fault` 1366, 1447, or 1422 for a bad number."""
-        check_finite(target)
+        """Return the axes of a PTP target; raise `Fault` 1366 or 1447."""
         if has_axes(target) or not any(name in target for name in (*_COMPONENTS, "S", "T")):
             return Goal(self._axes(target, motion.is_relative))
         externals = self.externals(target, motion.is_relative)
@@ -140,32 +137,20 @@ def has_axes(target: Target) -> bool:
     return any(name in target for name in AXIS_NAMES)
 
 
-def check_finite(target: Target) -> None:
-    """Raise `Fault` 1422 if a component is infinite or NaN."""
-    for name, value in target.items():
-        if not math.isfinite(value):
-            text = f"component {name} of the target is not a finite number"
-            raise Fault("invalid_target", text, number=1422, rules=("MSG-11",))
-
-
 def check_numbers(motion: Motion) -> None:
-    """Raise `Fault` 1422 if a motion parameter, a place or a range is infinite or NaN.
+    """Raise `Fault` 1422 if a target, a motion parameter or a place is infinite or NaN.
 
-    Components of targets, and numbers with a further requirement, are checked where they are used.
+    Numbers with a further requirement are checked where they are used.
     """
     settings, apo = motion.settings, motion.settings.approximation
-    percent = (*settings.axis_velocity, *settings.axis_acceleration, *settings.axis_jerk)
-    places = [*motion.places, *motion.stop_places]
-    for part in motion.parts:
-        places += (*part.places, *part.stop_places)
-    numbers: Mapping[str, Iterable[float]] = {
-        "the speed, acceleration or jerk of an axis": percent,
-        "a part of $APO": (apo.cdis, apo.cptp, apo.cvel, apo.cori),
-        "a place on the path": (place.position for place in places),
-    }
-    for name, values in numbers.items():
-        if not math.isfinite(sum(values)):
-            raise Fault("invalid", f"{name} is not a finite number", number=1422, rules=("MSG-11",))
+    numbers = [*settings.axis_velocity, *settings.axis_acceleration, *settings.axis_jerk]
+    numbers += (apo.cdis, apo.cptp, apo.cvel, apo.cori)
+    for one in (motion, *motion.parts):
+        numbers += (place.position for place in (*one.places, *one.stop_places))
+        numbers += (*one.target.values(), *(one.auxiliary or {}).values())
+    if not math.isfinite(sum(numbers)):
+        text = "a number of the motion is not finite"
+        raise Fault("invalid", text, number=1422, rules=("MSG-11",))
 
 
 def _bits(target: Target, name: str) -> int | None:

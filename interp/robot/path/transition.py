@@ -19,9 +19,8 @@ import numpy as np
 
 from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.arc_length import ArcLength
+from interp.robot.path.speed_profile import SpeedProfile
 
-_ROUNDS = 60
-_EXACT = 1e-15
 _UNEVEN = 2.0
 """Largest ratio of the durations of both sides: beyond it, a blend may cost more than it saves."""
 _BEHIND = 1e-9
@@ -106,7 +105,7 @@ class Rounding:
         bend = x2 * x2 + x1 * x3 + y2 * y2 + y1 * y3 + c * (x3 * y1 + 2.0 * x2 * y2 + x1 * y3)
         root = np.sqrt(square)
         w1, w2, w3 = (
-            w / self._length for w in (root, half / root, bend / root - half**2 / root**3)
+            w / self._way.length for w in (root, half / root, bend / root - half**2 / root**3)
         )
         inner = (1.0 / w1, -w2 / w1**3, (3.0 * w2 * w2 - w1 * w3) / w1**5)
         return np.stack(chained(one, inner)), np.stack(chained(other, inner))
@@ -118,9 +117,7 @@ class Rounding:
 
     def _inner(self, u: Array) -> Array:
         """Return the parameter v for u."""
-        if self.cosine == 1.0:
-            return _inner(*self._shares, self.slope, u.tobytes())
-        return self._way.parameters(u * self._length)
+        return self._way.parameters(u * self._way.length)
 
     @cached_property
     def _way(self) -> ArcLength:
@@ -133,79 +130,18 @@ class Rounding:
 
         return ArcLength(tangents)
 
-    @property
-    def _length(self) -> float:
-        return 1.0 if self.cosine == 1.0 else self._way.length
-
-
-@dataclass(frozen=True, eq=False)
-class Cubics:
-    """A parameter as a function of time: consecutive cubics, given by the state at their starts.
-
-    ``knots`` is ``(n, 5)``: time, value, and first to third derivative, from time 0 on; the last
-    one is the end.
-    """
-
-    knots: Array
-
-    @property
-    def duration(self) -> float:
-        """The time of all of them."""
-        return float(self.knots[-1, 0])
-
-    def at(self, times: Array) -> Array:
-        """Return values and first to third derivatives, ``(4, n)``."""
-        place = np.searchsorted(self.knots[:, 0], times, side="right") - 1
-        start, value, speed, bend, jerk = self.knots.T[:, place]
-        dt = times - start
-        found = np.empty((4, len(times)))
-        found[0] = value + dt * (speed + dt * (bend / 2.0 + dt * jerk / 6.0))
-        found[1] = speed + dt * (bend + dt * jerk / 2.0)
-        found[2] = bend + dt * jerk
-        found[3] = jerk
-        return found
-
-    def since(self, value: float) -> Cubics:
-        """Return the part from the time at which a value is reached; values must increase."""
-        return self.between(self._time(value), self.duration)
-
-    def until(self, value: float) -> Cubics:
-        """Return the part up to the time at which a value is reached; values must increase."""
-        return self.between(0.0, self._time(value))
-
-    def _time(self, value: float) -> float:
-        place = max(int(np.searchsorted(self.knots[:, 1], value)) - 1, 0)
-        start, origin, speed, bend, jerk = map(float, self.knots[place])
-        low, high = 0.0, float(self.knots[place + 1, 0]) - start
-        for _ in range(_ROUNDS):
-            dt = (low + high) / 2.0
-            if origin + dt * (speed + dt * (bend / 2.0 + dt * jerk / 6.0)) < value:
-                low = dt
-            else:
-                high = dt
-        return start + high
-
-    def between(self, start: float, end: float) -> Cubics:
-        """Return the part between two times."""
-        times = self.knots[:, 0]
-        inside = self.knots[(times > start) & (times < end)]
-        first, last = np.vstack(((start, end), self.at(np.array([start, end])))).T
-        knots = np.vstack((first, inside, last))
-        knots[:, 0] -= start
-        return Cubics(knots)
-
 
 @dataclass(frozen=True, eq=False)
 class Overlap:
     """The end of one motion and the start of the next, executed at the same time.
 
-    ``ending`` is the parameter of the first path over time while it brakes to its end, ``starting``
-    that of the second path while it accelerates from its start. Each motion is executed as it would
+    ``ending`` is the way over time on the first path in u while it brakes to its end, ``starting``
+    that on the second path while it accelerates from its start. Each motion is executed as it would
     be alone. So the blend takes the longer of both times, while a stop takes their sum.
     """
 
-    ending: Cubics
-    starting: Cubics
+    ending: SpeedProfile
+    starting: SpeedProfile
 
     @cached_property
     def duration(self) -> float:
@@ -224,27 +160,29 @@ class Overlap:
         ending = self.ending.between(self.ending.duration - both, self.ending.duration)
         return Overlap(ending, self.starting.between(0.0, both))
 
-    @cached_property
+    @property
     def before(self) -> float:
         """See `Transition.before`."""
-        return 1.0 - float(self.ending.knots[0, 1])
+        return self.ending.length
 
-    @cached_property
+    @property
     def after(self) -> float:
         """See `Transition.after`."""
-        return float(self.starting.knots[-1, 1])
+        return self.starting.length
 
     @property
     def breaks(self) -> Array:
         """See `Transition.breaks`."""
-        starting = self.duration - self.starting.duration + self.starting.knots[:, 0]
-        times = np.concatenate((self.ending.knots[:, 0], starting))
+        ending, starting = (
+            np.array([knot[0] for knot in each.knots]) for each in (self.ending, self.starting)
+        )
+        times = np.concatenate((ending, starting + self._delay))
         return np.minimum(times / self.duration + _BEHIND, 1.0)
 
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.at`."""
         one, other = self._both(u)
-        return np.minimum(one[0], 1.0), np.maximum(other[0], 0.0)
+        return 1.0 - self.before + one[0], other[0]
 
     def rates(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.rates`."""
@@ -255,15 +193,18 @@ class Overlap:
         times = u * self.duration
         one, other = self._both(u)
         one = one[1:] * (times <= self.ending.duration)
-        other = other[1:] * (times >= self.duration - self.starting.duration)
+        other = other[1:] * (times >= self._delay)
         return one, other
 
     def _both(self, u: Array) -> tuple[Array, Array]:
         """Return values and derivatives by u, ``(4, n)`` each."""
         times, powers = u * self.duration, self.duration ** np.arange(4.0)[:, None]
-        ending = np.minimum(times, self.ending.duration)
-        starting = np.maximum(times - (self.duration - self.starting.duration), 0.0)
-        return self.ending.at(ending) * powers, self.starting.at(starting) * powers
+        return self.ending.at(times) * powers, self.starting.at(times - self._delay) * powers
+
+    @property
+    def _delay(self) -> float:
+        """The time in s after which the second motion begins."""
+        return self.duration - self.starting.duration
 
 
 def chained(
@@ -296,31 +237,3 @@ def _rates(transition: Rounding | Overlap, parameters: bytes) -> tuple[Array, Ar
     one.setflags(write=False)
     other.setflags(write=False)
     return one, other
-
-
-@lru_cache(maxsize=16)  # values and derivatives are computed at the same parameters
-def _inner(a: float, b: float, slope: float, parameters: bytes) -> Array:
-    """Return the parameter v of a rounding for u, by Newton's method with bisection as fallback.
-
-    ``a`` and ``b`` are the shares of both sides; ``parameters`` are the float64 of an array
-    ``(n,)``.
-    """
-    u: Array = np.frombuffer(parameters)
-    c, d = 4.0 - slope, slope - 3.0
-    c3, d4 = 3.0 * c, 4.0 * d
-    v, low, high = u.copy(), np.zeros_like(u), np.ones_like(u)
-    for _ in range(_ROUNDS):
-        w = 1.0 - v
-        beyond = a * (1.0 - w**3 * (c + d * w)) + b * (v**3 * (c + d * v)) - u
-        if np.abs(beyond).max(initial=0.0) < _EXACT:
-            break
-        low, high = np.where(beyond <= 0.0, v, low), np.where(beyond >= 0.0, v, high)
-        slopes = a * (w**2 * (c3 + d4 * w)) + b * (v**2 * (c3 + d4 * v))
-        following = v - beyond / slopes
-        outside = (following <= low) | (following >= high)
-        following = np.where(outside, (low + high) / 2.0, following)
-        if np.array_equal(following, v):
-            break
-        v = following
-    v.setflags(write=False)
-    return v

@@ -58,7 +58,6 @@ class WristCurve(PosePathCurve):
 
     def _exact_axes(self, u: Array, references: Array) -> Array:
         axes = references.copy()
-        axes[:, _MAIN:] = self._from[_MAIN:] + u[:, None] * (self._to - self._from)[_MAIN:]
         positions, _ = self.tool_path.at(u)
         before = self._chains_before(u)
         wanted = (before[..., :3, :3] @ positions[:, :, None])[:, :, 0] + before[..., :3, 3]

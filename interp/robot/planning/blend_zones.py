@@ -90,7 +90,7 @@ def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
     speed = share * stretch.programmed
     size = stretch.size
     sized = replace(bounds, velocity=speed) * size
-    return ramp(speed * size, 0.0, 0.0, sized).distance / size
+    return ramp(speed * size, 0.0, 0.0, sized).length / size
 
 
 def _axis_share(

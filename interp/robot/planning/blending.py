@@ -24,7 +24,8 @@ from interp.robot.path.axis_path import (
     Rates,
 )
 from interp.robot.path.pose_path import Blend, StraightLine
-from interp.robot.path.transition import Cubics, Overlap, Rounding, Transition
+from interp.robot.path.speed_profile import SpeedProfile, joined
+from interp.robot.path.transition import Overlap, Rounding, Transition
 from interp.robot.planning.blend_zones import Zone
 from interp.robot.planning.junctions import AT_REST, SAME_CURVE, JoinedStretch, Junction
 from interp.robot.planning.limits import (
@@ -228,7 +229,10 @@ class _Corner:
             if keeps_speed and min(times) < exact:
                 return choices[times.index(min(times))]
             most = _SAVED * exact
-            overlap = Overlap(ending.since(1.0 - zone.before), starting.until(zone.after))
+            overlap = Overlap(
+                ending.between(ending.time_at(1.0 - zone.before), ending.duration),
+                starting.between(0.0, starting.time_at(zone.after)),
+            )
             if overlap.is_even:
                 choices.append(overlap)
                 times.append(self._duration(overlap))
@@ -284,19 +288,14 @@ class _Corner:
 
 
 @lru_cache(maxsize=64)  # a motion is the second of one blend, then the first of another
-def _parameter(curve_limits: CurveLimits) -> Cubics | None:
+def _parameter(curve_limits: CurveLimits) -> SpeedProfile | None:
     """Return the parameter of a curve over time, from rest to rest, or ``None`` if impossible."""
     stretches = [JoinedStretch(stretch, SAME_CURVE) for stretch in curve_limits.stretches]
     profiles = schedule(stretches, AT_REST, 1.0)
     if profiles is None:
         return None
-    knots, time = [], 0.0
-    for stretch, profile in zip(curve_limits.stretches, profiles, strict=True):
-        start, size = stretch.start, stretch.size
-        for begin, place, *rates in profile.knots:
-            knots.append((time + begin, start + place / size, *(rate / size for rate in rates)))
-        time += profile.duration
-    return Cubics(np.array(knots))
+    steps = zip(curve_limits.stretches, profiles, strict=True)
+    return joined([profile.scaled(1.0 / stretch.size) for stretch, profile in steps])
 
 
 def _junctions(transition: Transition) -> tuple[Junction, Junction]:

@@ -108,8 +108,8 @@ class Stretch:
             (self.end - start) / share,
             self.size * share,
             self.programmed / share,
-            self.normal / share,
-            self.hard / share,
+            self.normal * (1.0 / share),
+            self.hard * (1.0 / share),
         )
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from interp.robot.path.speed_profile import steady
 from interp.robot.planning.junctions import SAME_CURVE, JoinedStretch, PathState
-from interp.robot.planning.profile import steady
 from interp.robot.planning.schedule import braking, schedule
 from interp.robot.planning.timeline import Key, Leg, Section, Timeline
 

@@ -9,6 +9,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from interp.robot.path.speed_profile import SpeedProfile, profile_of
+
 _HALVINGS = 48
 
 
@@ -36,35 +38,16 @@ class Bounds:
         """Return the bounds in another unit."""
         return Bounds(self.velocity * scale, self.acceleration * scale, self.jerk * scale)
 
-    def __truediv__(self, scale: float) -> Bounds:
-        return Bounds(self.velocity / scale, self.acceleration / scale, self.jerk / scale)
-
-
-@dataclass(frozen=True, slots=True)
-class Ramp:
-    """The fastest change of speed and acceleration.
-
-    ``pieces`` are up to three tuples of duration, initial acceleration, and jerk.
-    """
-
-    duration: float
-    distance: float
-    pieces: tuple[tuple[float, float, float], ...]
-
-
-NO_RAMP = Ramp(0.0, 0.0, ())
-
 
 def ramp(
     speed: float, acceleration: float, target: float, bounds: Bounds, final: float = 0.0
-) -> Ramp:
-    """Return the change from a speed and acceleration to a target speed and final acceleration.
+) -> SpeedProfile:
+    """Return the fastest change to a target speed, from one acceleration to another.
 
     If one of these accelerations exceeds its bound, it replaces the bound.
     """
     jerk, most = bounds.jerk, max(bounds.acceleration, abs(acceleration), abs(final))
-    slew = abs(final - acceleration) / jerk
-    sign = 1.0 if target >= speed + slew * (acceleration + final) / 2 else -1.0
+    sign = 1.0 if target >= speed_after(speed, acceleration, final, jerk) else -1.0
     start, end = sign * acceleration, sign * final  # as if speeding up
     change = sign * (target - speed)
     peak = math.sqrt(max(jerk * change + (start * start + end * end) / 2, 0.0))
@@ -72,22 +55,12 @@ def ramp(
     if peak > most:
         hold = (change - (2 * most * most - start * start - end * end) / (2 * jerk)) / most
         peak = most
-    rise, fall = max(peak - start, 0.0) / jerk, max(peak - end, 0.0) / jerk
-    # Distances in the mirrored frame, from the speed at the start of each phase.
-    first = sign * speed
-    second = first + rise * (start + peak) / 2
-    third = second + hold * peak
-    travelled = (
-        rise * (first + rise * (start / 2 + rise * jerk / 6))
-        + hold * (second + hold * peak / 2)
-        + fall * (third + fall * (peak / 2 - fall * jerk / 6))
-    )
     pieces = (
-        (rise, acceleration, sign * jerk),
+        ((peak - start) / jerk, acceleration, sign * jerk),
         (hold, sign * peak, 0.0),
-        (fall, sign * peak, -sign * jerk),
+        ((peak - end) / jerk, sign * peak, -sign * jerk),
     )
-    return Ramp(rise + hold + fall, sign * travelled, pieces)
+    return profile_of(speed, pieces)
 
 
 def speed_after(speed: float, acceleration: float, final: float, jerk: float) -> float:

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from interp.robot.path.speed_profile import SpeedProfile
 from interp.robot.planning.junctions import JoinedStretch, PathState
-from interp.robot.planning.profile import SpeedProfile
-from interp.robot.planning.spans import Span, at_most, spans_of
+from interp.robot.planning.spans import RATIOS, Span, at_most, spans_of
 
 _HELD = 0.8
 """Share of its constant speed below which a blend counts as slowed down by its neighbours."""
@@ -41,8 +41,8 @@ def schedule(
         return []
     best: _Candidate | None = None
     tried: list[list[float]] = []
-    for is_loose in (True, False):
-        spans = spans_of(stretches, state, override, is_loose=is_loose)
+    for ratio in RATIOS:
+        spans = spans_of(stretches, state, override, ratio=ratio)
         if (lengths := [span.length for span in spans]) in tried:
             continue
         tried.append(lengths)
@@ -71,8 +71,8 @@ def braking(
     """
     if not stretches:
         return []
-    for is_loose in (True, False):
-        spans = spans_of(stretches, state, 1.0, is_hard=is_hard, is_loose=is_loose)
+    for ratio in RATIOS:
+        spans = spans_of(stretches, state, 1.0, ratio=ratio, is_hard=is_hard)
         constant = [span for span in spans if span.is_constant]
         for slowed in ((), constant):
             for span in slowed:

@@ -13,15 +13,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from interp.robot.planning.junctions import STOP, JoinedStretch, PathState
-from interp.robot.planning.profile import SpeedProfile, steady, stop, travel
+from interp.robot.path.speed_profile import SpeedProfile, steady
+from interp.robot.planning.profile import travel
 from interp.robot.planning.ramps import Bounds, bisected, ramp, speed_after
 
 _SPARE = 1.0 - 1e-6
 """Share of a length that changes of speed may use, so that rounding makes none impossible."""
 _ALIKE = 1.0 - 1e-3
 """Ratio above which two speeds count as equal."""
-_LOOSE = 0.6
-"""Ratio of speeds above which the lower one may cost nothing, as neither is reached."""
+RATIOS = (0.6, _ALIKE)
+"""Ratios of speeds above which stretches are joined: the lower speed for fewer spans, or alike."""
 _ABOUT = 0.8
 """Ratio of accelerations or jerks above which the lower one is better than another span."""
 _JUMP = 0.01
@@ -144,12 +145,10 @@ class Span:
 
     def stop(self, speed: float) -> list[SpeedProfile] | None:
         """Return the profiles up to a stop within the span, or ``None`` if it is too short."""
-        acceleration = self._entry_acceleration(speed)
-        way = ramp(speed, acceleration, 0.0, self.bounds).distance
-        if not at_most(way, self.length):
+        whole = ramp(speed, self._entry_acceleration(speed), 0.0, self.bounds)
+        if not at_most(whole.length, self.length):
             return None
-        whole = stop(speed, acceleration, self.bounds)
-        last = next(place for place, end in enumerate(self.ends) if at_most(way, end))
+        last = next(place for place, end in enumerate(self.ends) if at_most(whole.length, end))
         return whole.split([*self.ends[:last], whole.length])
 
     def _entry_acceleration(self, speed: float) -> float:
@@ -157,7 +156,7 @@ class Span:
 
     def _distance(self, speed: float, acceleration: float, final: float) -> float:
         """Return the distance on which the speed changes to a final one."""
-        return ramp(speed, acceleration, final, self.bounds, self.exit_bend * final**2).distance
+        return ramp(speed, acceleration, final, self.bounds, self.exit_bend * final**2).length
 
 
 def spans_of(
@@ -165,14 +164,13 @@ def spans_of(
     state: PathState,
     override: float,
     *,
+    ratio: float,
     is_hard: bool = False,
-    is_loose: bool = True,
 ) -> list[Span]:
     """Return the spans of a row of stretches, from a state on the first one.
 
-    If ``is_loose``, stretches with less similar bounds are joined: a lower speed for fewer spans.
+    Stretches are joined of which the speeds have at least this ``ratio``: one of `RATIOS`.
     """
-    ratio = _LOOSE if is_loose else _ALIKE
     spans: list[Span] = []
     for joined in stretches:
         stretch, junction = joined.stretch, joined.junction

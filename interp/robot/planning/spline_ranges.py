@@ -14,9 +14,9 @@ import numpy as np
 from interp.port.requests import SplineRange
 from interp.robot.arm import Motion
 from interp.robot.kinematics.kinematics import Array
+from interp.robot.path.speed_profile import SpeedProfile
 from interp.robot.planning.junctions import AT_REST, SAME_CURVE, STOP, JoinedStretch
 from interp.robot.planning.limits import CurveLimits, Stretch
-from interp.robot.planning.profile import SpeedProfile
 from interp.robot.planning.schedule import schedule
 from interp.robot.planning.tracks import Piece
 from interp.values.faults import Fault

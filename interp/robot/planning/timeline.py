@@ -13,10 +13,10 @@ import numpy.typing as npt
 from interp.robot.arm import Samples
 from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.axis_path import Curve
+from interp.robot.path.speed_profile import SpeedProfile
 from interp.robot.path.tool_path import tool_tangents
 from interp.robot.planning.junctions import SAME_CURVE, STOP, JoinedStretch, Junction, PathState
 from interp.robot.planning.limits import CurveLimits, Stretch
-from interp.robot.planning.profile import SpeedProfile
 
 MICROSECOND = 1e-6
 APEX = 0.5
@@ -86,7 +86,7 @@ class Leg:
 
     def at(self, times: Array) -> Array:
         """Return the parameters u at times."""
-        position = self.profile.at(np.minimum(times, self.ends) - self.begins)
+        position, *_ = self.profile.at(np.minimum(times, self.ends) - self.begins)
         return self.stretch.start + position / self.stretch.size
 
     def state(self, time: float) -> PathState:

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from interp.robot.planning.profile import SpeedProfile, profile_of, stop, travel
+from interp.robot.path.speed_profile import SpeedProfile, profile_of
+from interp.robot.planning.profile import travel
 from interp.robot.planning.ramps import Bounds, ramp
 
 BOUNDS = Bounds(1000.0, 2000.0, 20000.0)
@@ -35,7 +36,7 @@ def test_from_rest_to_rest() -> None:
 @given(length=st.floats(1e-3, 5000.0), start=speeds, end=speeds)
 def test_between_speeds(length: float, start: float, end: float) -> None:
     """Where the ramp between two speeds fits, the way ends where and as it should."""
-    assume(ramp(start, 0.0, end, BOUNDS).distance <= length)
+    assume(ramp(start, 0.0, end, BOUNDS).length <= length)
     profile = travel(length, start, 0.0, end, BOUNDS)
     check(profile, BOUNDS)
     position, speed, acceleration = profile.state(profile.duration)
@@ -50,15 +51,14 @@ def test_a_ramp_is_what_the_profile_does(speed: float, acceleration: float, targ
     assume(speed + acceleration * abs(acceleration) / 40000.0 >= 0.0)
     wide = Bounds(1e6, BOUNDS.acceleration, BOUNDS.jerk)
     change = ramp(speed, acceleration, target, BOUNDS)
-    profile = travel(change.distance, speed, acceleration, target, wide)
+    profile = travel(change.length, speed, acceleration, target, wide)
     assert change.duration == pytest.approx(profile.duration, rel=1e-5, abs=1e-7)
 
 
-def test_stopping_is_the_ramp_to_zero() -> None:
-    """A stop ends at rest, as far on as the ramp says."""
-    profile = stop(800.0, 500.0, BOUNDS)
+def test_a_ramp_to_zero_is_a_stop() -> None:
+    """A stop ends at rest."""
+    profile = ramp(800.0, 500.0, 0.0, BOUNDS)
     check(profile, BOUNDS)
-    assert ramp(800.0, 500.0, 0.0, BOUNDS).distance == pytest.approx(profile.length)
     assert 0.0 == pytest.approx(profile.final, abs=1e-9)
 
 
@@ -87,7 +87,7 @@ def test_one_time_or_many() -> None:
     profile = travel(700.0, 50.0, 0.0, 0.0, BOUNDS)
     times = np.array([-1.0, 0.0, 0.1, profile.duration / 2, profile.duration, math.inf])
     single = [profile.state(time)[0] for time in times.tolist()]
-    assert np.allclose(profile.at(times), single, rtol=1e-12)
+    assert np.allclose(profile.at(times)[0], single, rtol=1e-12)
 
 
 @given(
@@ -102,7 +102,7 @@ def test_lengths_that_are_just_enough(
     """A little more than a change of speed takes is travelled within the bounds, at any scale."""
     unit = 10.0**scale
     bounds = Bounds(unit, 7.0 * unit, 60.0 * unit)
-    least = max(ramp(start * unit, 0.0, end * unit, bounds).distance, 0.01 * unit)
+    least = max(ramp(start * unit, 0.0, end * unit, bounds).length, 0.01 * unit)
     length = least * (1.0 + 10.0**exponent)
     profile = travel(length, start * unit, 0.0, end * unit, bounds)
     wide = Bounds(unit * (1 + 1e-6), 7.0 * unit * (1 + 1e-6), 60.0 * unit * (1 + 1e-6))
