@@ -12,8 +12,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from interp.robot.planning.junctions import STOP, JoinedStretch, PathState
 from interp.robot.path.speed_profile import SpeedProfile, steady
+from interp.robot.planning.junctions import STOP, JoinedStretch, PathState
 from interp.robot.planning.profile import travel
 from interp.robot.planning.ramps import Bounds, bisected, ramp, speed_after
 

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from interp.robot.path.speed_profile import SpeedProfile
 from interp.robot.planning.junctions import AT_REST, JoinedStretch, Junction, PathState
 from interp.robot.planning.limits import Stretch
-from interp.robot.path.speed_profile import SpeedProfile
 from interp.robot.planning.ramps import Bounds
 from interp.robot.planning.schedule import braking, schedule
 
