@@ -20,7 +20,11 @@ from conformance.evaluation.motions import ended
 from conformance.evaluation.observation import Finding, Observation
 from conformance.evaluation.path_expectations import evaluate_on_path
 from conformance.evaluation.path_laws import path_violations
-from conformance.evaluation.place_laws import blend_violations, trigger_violations
+from conformance.evaluation.place_laws import (
+    blend_violations,
+    missing_blends,
+    trigger_violations,
+)
 from conformance.evaluation.run_laws import run_violations
 from conformance.evaluation.spline_laws import spline_violations
 from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, unwatched
@@ -99,6 +103,7 @@ def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
         run_violations(seen),
         motion_violations(seen, motions),
         blend_violations(free),
+        missing_blends(free),
         blend_speed_violations(free),
         spline_violations(free),
     ]

@@ -84,6 +84,25 @@ def blend_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
             yield one.broken(law, f"{excesses} tolerances beyond them, before and behind the point")
 
 
+def missing_blends(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+    """Yield an approximated motion that stops though the next was planned before it began.
+
+    Both have a length, as far as their times tell.
+    """
+    for one, other in pairwise(motions):
+        settings = one.motion.settings.approximation
+        sizes = {"C_PTP": settings.cptp, "C_VEL": settings.cvel, "C_ORI": settings.cori}
+        if not one.motion.criteria or not one.stops or not follows(one, other):
+            continue
+        is_wanted = sizes.get(one.motion.criteria[0], settings.cdis) > 0.0
+        if other.motion.kind.endswith("PTP"):
+            is_wanted = is_wanted and other.motion.settings.approximation.cptp > 0.0
+        is_in_time = other.planned < one.start < one.end and other.start < other.end
+        if is_wanted and is_in_time:
+            law = "a motion is approximated where the next is planned before it begins"
+            yield one.broken(law, "it stops")
+
+
 def _excess(
     one: EndedMotion,
     way: _ProgrammedPath | None,

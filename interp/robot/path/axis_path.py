@@ -1,7 +1,7 @@
 """Curves in joint space: the axes along a path, as functions of its parameter u from 0 to 1.
 
 Axes are arrays ``(n, axes)``: the six of the robot, then the external axes, which usually move in
-proportion to u. `Curve.rates` are the first to third derivatives by u. They are exact for joint
+proportion to u. `AxisPath.rates` are the first to third derivatives by u. They are exact for joint
 curves; for others they are those of a spline through sufficiently many points of the curve. The
 axes themselves are always exact.
 """
@@ -40,8 +40,30 @@ _SMOOTH = 0.004
 _ROUGH = 0.05  # degrees of fourth difference at which, with most points, an axis jumps
 
 
-class Curve(Protocol):
-    """A path of the axes; two curves are equal only if they are the same object."""
+class AxisPath(Protocol):
+    """Some axes as functions of u."""
+
+    @property
+    def grid(self) -> Array:
+        """Parameters ``(n,)`` from 0 to 1, close enough to capture the whole path."""
+        ...
+
+    @property
+    def end(self) -> Array:
+        """The axes at u = 1, ``(axes,)``."""
+        ...
+
+    def axes(self, u: Array) -> Array:
+        """Return the axes at parameters ``(n,)``."""
+        ...
+
+    def rates(self, u: Array) -> Rates:
+        """Return the first to third derivatives of the axes by u."""
+        ...
+
+
+class Curve(AxisPath, Protocol):
+    """A path of all axes; two curves are equal only if they are the same object."""
 
     def __hash__(self) -> int: ...
 
@@ -65,200 +87,134 @@ class Curve(Protocol):
         """Whether the axes are linear in u, so that the second derivative is zero."""
         ...
 
-    @property
-    def grid(self) -> Array:
-        """Parameters ``(n,)`` from 0 to 1, close enough to capture the whole curve."""
-        ...
-
-    @property
-    def end(self) -> Array:
-        """The axes at u = 1, ``(axes,)``."""
-        ...
-
-    def axes(self, u: Array) -> Array:
-        """Return the axes at parameters ``(n,)``."""
-        ...
-
-    def rates(self, u: Array) -> Rates:
-        """Return the first to third derivatives of the axes by u."""
-        ...
-
-
-class ExternalAxes(Protocol):
-    """The path of the external axes, as a function of u; arrays are ``(n, axes)``."""
-
-    def at(self, u: Array) -> Array:
-        """Return the external axes at parameters ``(n,)``."""
-        ...
-
-    def rates(self, u: Array) -> Rates:
-        """Return the first to third derivatives by u."""
-        ...
-
 
 @dataclass(frozen=True, slots=True, eq=False)
-class LinearExternals:
-    """External axes that are linear in u."""
+class LinearAxes:
+    """Axes that are linear in u."""
 
     start: Array
     end: Array
 
-    def at(self, u: Array) -> Array:
-        """See `ExternalAxes.at`."""
+    @property
+    def grid(self) -> Array:
+        """See `AxisPath.grid`."""
+        return np.linspace(0.0, 1.0, 2)
+
+    def axes(self, u: Array) -> Array:
+        """See `AxisPath.axes`."""
         return self.start + u[:, None] * (self.end - self.start)
 
     def rates(self, u: Array) -> Rates:
-        """See `ExternalAxes.rates`."""
-        zeros = np.zeros((len(u), len(self.start)))
-        return zeros + (self.end - self.start), zeros, zeros
+        """See `AxisPath.rates`."""
+        shape = (len(u), len(self.start))
+        zeros = np.zeros(shape)
+        return np.broadcast_to(self.end - self.start, shape), zeros, zeros
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BlendedExternals:
-    """External axes of a blend, combined as in `BlendedAxes`."""
-
-    first: ExternalAxes
-    second: ExternalAxes
-    transition: Transition
-
-    def at(self, u: Array) -> Array:
-        """See `ExternalAxes.at`."""
-        one, other = self.transition.at(u)
-        corner = self.first.at(np.ones(1))
-        axes: Array = self.first.at(one) - corner + self.second.at(other)
-        return axes
-
-    def rates(self, u: Array) -> Rates:
-        """See `ExternalAxes.rates`."""
-        return _blended_rates(self, u)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Piecewise:
+class SplineAxes:
     """A section of a spline: from its parameter ``start`` over ``length``."""
 
     spline: CubicSpline
     start: float
     length: float
 
-    def at(self, u: Array) -> Array:
-        """See `ExternalAxes.at`."""
+    @property
+    def grid(self) -> Array:
+        """See `AxisPath.grid`."""
+        return np.linspace(0.0, 1.0, _FEWEST)
+
+    @property
+    def end(self) -> Array:
+        """See `AxisPath.end`."""
+        end: Array
+        (end,) = self.axes(np.ones(1))
+        return end
+
+    def axes(self, u: Array) -> Array:
+        """See `AxisPath.axes`."""
         axes: Array = self.spline(self.start + u * self.length)
         return axes
 
     def rates(self, u: Array) -> Rates:
-        """See `ExternalAxes.rates`."""
+        """See `AxisPath.rates`."""
         where = self.start + u * self.length
         first, second, third = (self.spline(where, n) * self.length**n for n in (1, 2, 3))
         return first, second, third
 
 
-@dataclass(frozen=True, eq=False)
-class JointSpline:
-    """All axes along a section of a spline through several positions: PTP spline blocks."""
-
-    arm: Kinematics
-    placement: Placement
-    part: Piecewise
-
-    pose_path = None
-    is_straight = False
-
-    @cached_property
-    def end(self) -> Array:
-        """See `Curve.end`."""
-        end: Array
-        (end,) = self.part.at(np.ones(1))
-        return end
-
-    @property
-    def grid(self) -> Array:
-        """See `Curve.grid`."""
-        return np.linspace(0.0, 1.0, _FEWEST)
-
-    def axes(self, u: Array) -> Array:
-        """See `Curve.axes`."""
-        return self.part.at(u)
-
-    def rates(self, u: Array) -> Rates:
-        """See `Curve.rates`."""
-        return self.part.rates(u)
-
-
-@dataclass(frozen=True, eq=False)
-class JointLine:
-    """All axes from one position to another, linear in u: PTP [MOT-01]."""
-
-    arm: Kinematics
-    placement: Placement
-    start: Array
-    end: Array
-
-    pose_path = None
-    is_straight = True
-
-    @property
-    def grid(self) -> Array:
-        """See `Curve.grid`."""
-        return np.linspace(0.0, 1.0, 2)
-
-    def axes(self, u: Array) -> Array:
-        """See `Curve.axes`."""
-        return self.start + u[:, None] * (self.end - self.start)
-
-    def rates(self, u: Array) -> Rates:
-        """See `Curve.rates`."""
-        shape = (len(u), len(self.start))
-        zeros = np.zeros(shape)
-        return np.broadcast_to(self.end - self.start, shape), zeros, zeros
-
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class BlendedAxes:
     """A blend of axes: ``first(one(u)) - P + second(other(u))`` [BLD-12].
 
     P is the position of the axes at the point between the two motions.
     """
 
-    first: Curve
-    second: Curve
+    first: AxisPath
+    second: AxisPath
     transition: Transition
 
-    pose_path = None
-    is_straight = False
+    @property
+    def grid(self) -> Array:
+        """See `AxisPath.grid`."""
+        count = max(len(self.first.grid), len(self.second.grid), _FEWEST)
+        return np.unique(np.concatenate((np.linspace(0.0, 1.0, count), self.transition.breaks)))
 
     @property
-    def arm(self) -> Kinematics:
-        """See `Curve.arm`."""
-        return self.first.arm
-
-    @property
-    def placement(self) -> Placement:
-        """See `Curve.placement`."""
-        return self.first.placement
-
-    @cached_property
     def end(self) -> Array:
-        """See `Curve.end`."""
+        """See `AxisPath.end`."""
         end: Array
         (end,) = self.axes(np.ones(1))
         return end
 
-    @property
-    def grid(self) -> Array:
-        """See `Curve.grid`."""
-        count = max(len(self.first.grid), len(self.second.grid), _FEWEST)
-        return np.unique(np.concatenate((np.linspace(0.0, 1.0, count), self.transition.breaks)))
-
     def axes(self, u: Array) -> Array:
-        """See `Curve.axes`."""
+        """See `AxisPath.axes`."""
         one, other = self.transition.at(u)
         axes: Array = self.first.axes(one) - self.first.end + self.second.axes(other)
         return axes
 
     def rates(self, u: Array) -> Rates:
-        """See `Curve.rates`."""
-        return _blended_rates(self, u)
+        """See `AxisPath.rates`."""
+        (one, other), rates = self.transition.at(u), self.transition.rates(u)
+        of_one, of_other = (each[:, :, None] for each in rates)
+        leaving = chained(self.first.rates(one), of_one)
+        joining = chained(self.second.rates(other), of_other)
+        first, second, third = (left + right for left, right in zip(leaving, joining, strict=True))
+        return first, second, third
+
+
+@dataclass(frozen=True, eq=False)
+class JointCurve:
+    """All axes along a path in axis space: PTP [MOT-01], its blocks, and blends."""
+
+    arm: Kinematics
+    placement: Placement
+    path: AxisPath
+
+    pose_path = None
+
+    @property
+    def is_straight(self) -> bool:
+        """See `Curve.is_straight`."""
+        return isinstance(self.path, LinearAxes)
+
+    @property
+    def grid(self) -> Array:
+        """See `AxisPath.grid`."""
+        return self.path.grid
+
+    @cached_property
+    def end(self) -> Array:
+        """See `AxisPath.end`."""
+        return self.path.end
+
+    def axes(self, u: Array) -> Array:
+        """See `AxisPath.axes`."""
+        return self.path.axes(u)
+
+    def rates(self, u: Array) -> Rates:
+        """See `AxisPath.rates`."""
+        return self.path.rates(u)
 
 
 class PosePathCurve:
@@ -277,7 +233,7 @@ class PosePathCurve:
         placement: Placement,
         pose_path: PosePath,
         start: Array,
-        others: ExternalAxes,
+        others: AxisPath,
     ) -> None:
         self.arm = arm
         self.placement = placement
@@ -289,15 +245,15 @@ class PosePathCurve:
         self.others = others
         self.grid, axes = self._points(start)
         self._table = UniformSpline(axes)
-        self.end: Array = np.concatenate((axes[-1], *others.at(np.ones(1))))
+        self.end: Array = np.concatenate((axes[-1], others.end))
 
     def axes(self, u: Array) -> Array:
-        """See `Curve.axes`."""
+        """See `AxisPath.axes`."""
         robot = self._exact_axes(u, self._table.at(u))
-        return np.concatenate((robot, self.others.at(u)), axis=1)
+        return np.concatenate((robot, self.others.axes(u)), axis=1)
 
     def rates(self, u: Array) -> Rates:
-        """See `Curve.rates`."""
+        """See `AxisPath.rates`."""
         first, second, third = (
             np.concatenate(both, axis=1)
             for both in zip(self._table.rates(u), self.others.rates(u), strict=True)
@@ -322,7 +278,7 @@ class PosePathCurve:
         """Return the transforms before the points of the path, in the chain to the flange."""
         if not self.placement.is_carried:
             return self._before
-        return self.placement.chains_before(self.others.at(u))
+        return self.placement.chains_before(self.others.axes(u))
 
     def _flanges(self, u: Array) -> Array:
         poses = poses_of(self.tool_path, u)
@@ -345,16 +301,6 @@ class PosePathCurve:
         if np.abs(np.diff(axes[::_COARSE], n=4, axis=0)).max() < _NOISE:
             return grid[::_COARSE], axes[::_COARSE]
         return grid, axes
-
-
-def _blended_rates(blend: BlendedAxes | BlendedExternals, u: Array) -> Rates:
-    """Return the derivatives of a blend by u, from those of its two parts."""
-    (one, other), rates = blend.transition.at(u), blend.transition.rates(u)
-    of_one, of_other = (each[:, :, None] for each in rates)
-    leaving = chained(blend.first.rates(one), of_one)
-    joining = chained(blend.second.rates(other), of_other)
-    first, second, third = (left + right for left, right in zip(leaving, joining, strict=True))
-    return first, second, third
 
 
 def _singular() -> Fault:

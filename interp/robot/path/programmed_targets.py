@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from interp.robot.arm import Motion, Target
+from interp.robot.arm import Motion, SplinePart, Target
 from interp.robot.kinematics.kinematics import Array, Kinematics
 from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES, ROBOT_AXES
 from interp.robot.kinematics.placement import Placement
@@ -145,7 +145,8 @@ def check_numbers(motion: Motion) -> None:
     settings, apo = motion.settings, motion.settings.approximation
     numbers = [*settings.axis_velocity, *settings.axis_acceleration, *settings.axis_jerk]
     numbers += (apo.cdis, apo.cptp, apo.cvel, apo.cori)
-    for one in (motion, *motion.parts):
+    every: tuple[Motion | SplinePart, ...] = (motion, *motion.parts)
+    for one in every:
         numbers += (place.position for place in (*one.places, *one.stop_places))
         numbers += (*one.target.values(), *(one.auxiliary or {}).values())
     if not math.isfinite(sum(numbers)):

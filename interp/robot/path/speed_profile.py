@@ -52,8 +52,9 @@ class SpeedProfile:
         """
         clipped = np.minimum(np.maximum(times, 0.0), self.duration)
         place = np.searchsorted(self._columns[0], clipped, side="right") - 1
-        start, *state, jerk = self._columns[:, place]
-        return np.stack((*_moved(clipped - start, *state, jerk), jerk))
+        start, position, speed, acceleration, jerk = self._columns[:, place]
+        dt = clipped - start
+        return np.stack((*_moved(dt, position, speed, acceleration, jerk), jerk))
 
     def state(self, time: float) -> tuple[float, float, float]:
         """Return position, speed and acceleration at a time; outside as in `at`."""
@@ -88,8 +89,8 @@ class SpeedProfile:
         """Return the profile with an end position that differs only by rounding."""
         if self.length <= 0.0:
             return self
-        *knots, (time, _, *rest) = self.scaled(length / self.length).knots
-        return SpeedProfile([*knots, (time, length, *rest)])
+        *knots, (time, _, speed, acceleration, jerk) = self.scaled(length / self.length).knots
+        return SpeedProfile([*knots, (time, length, speed, acceleration, jerk)])
 
     def scaled(self, share: float) -> SpeedProfile:
         """Return the profile with positions in another unit."""
@@ -139,7 +140,8 @@ def joined(profiles: Sequence[SpeedProfile]) -> SpeedProfile:
     time = position = 0.0
     knots: list[Knot] = []
     for profile in profiles:
-        knots = [*knots[:-1], *((time + t, position + p, *rest) for t, p, *rest in profile.knots)]
+        own = [(time + t, position + p, v, a, j) for t, p, v, a, j in profile.knots]
+        knots = [*knots[:-1], *own]
         time, position, *_ = knots[-1]
     return SpeedProfile(knots)
 

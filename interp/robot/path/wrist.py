@@ -12,7 +12,7 @@ import numpy as np
 from interp.robot.kinematics.kinematics import Array, Kinematics
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solution_choice import ptp_target
-from interp.robot.path.axis_path import ExternalAxes, PosePathCurve
+from interp.robot.path.axis_path import AxisPath, PosePathCurve
 from interp.robot.path.pose_path import PosePath, poses_of
 from interp.values.faults import Fault
 from interp.values.poses import Pose
@@ -37,12 +37,11 @@ class WristCurve(PosePathCurve):
         placement: Placement,
         pose_path: PosePath,
         start: Array,
-        others: ExternalAxes,
+        others: AxisPath,
     ) -> None:
         (end,) = poses_of(pose_path, np.ones(1))
         try:
-            (own,) = others.at(np.ones(1))
-            there = placement.at(own.tolist())
+            there = placement.at(others.end.tolist())
             flange = there.flange(Pose.from_matrix(end.tolist()))
             goal = ptp_target(arm, flange, start.tolist(), tool=placement.tool)
         except Fault as error:

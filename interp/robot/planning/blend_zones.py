@@ -75,11 +75,17 @@ def _path_share(track: Track, criterion: str, values: Approximation, *, at_end: 
     if criterion == "C_VEL":
         return _braking_share(track, values.cvel / 100.0, at_end=at_end)
     if criterion == "C_ORI":
-        angle = 0.0 if pose_path is None else math.degrees(max(pose_path.angles))
-        return values.cori / angle if angle > 0.0 else 1.0
+        return (
+            1.0 if pose_path is None else _share(values.cori, math.degrees(max(pose_path.angles)))
+        )
     if pose_path is None:
         return _way_share(curve, values.cdis, at_end=at_end)
-    return values.cdis / pose_path.length if pose_path.length > 0.0 else 1.0
+    return _share(values.cdis, pose_path.length)
+
+
+def _share(part: float, whole: float) -> float:
+    """Return the share of a part, all if the whole is less."""
+    return part / whole if part < whole else 1.0
 
 
 def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
@@ -113,7 +119,7 @@ def _turning_share(curve: Curve, share: float) -> float:
     (travel,), _, _ = curve.rates(np.ones(1))
     machine = curve.arm.machine
     reach = np.array([axis.approximation for axis in machine.every_axis])
-    return float((share * reach / np.maximum(np.abs(travel), 1e-9)).min())
+    return share / float((np.abs(travel) / reach).max())
 
 
 def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:

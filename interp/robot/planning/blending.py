@@ -17,9 +17,10 @@ import numpy as np
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.solution_choice import check_path
 from interp.robot.path.axis_path import (
+    AxisPath,
     BlendedAxes,
-    BlendedExternals,
     Curve,
+    JointCurve,
     PosePathCurve,
     Rates,
 )
@@ -119,14 +120,14 @@ class _Corner:
         """Return the blend with a transition. Raises `Fault` if it leaves the working range."""
         one, other = self.one.curve, self.other.curve
         axes = BlendedAxes(one, other, transition)
-        curve: Curve = axes
+        curve: Curve = JointCurve(one.arm, one.placement, axes)
         if self.common is None:
             check_path(self.tracks.machine.every_axis, curve.axes(curve.grid))
         else:
-            (start,) = one.axes(np.array([1.0 - transition.before]))
+            (start,) = axes.axes(np.zeros(1))
             pose_path = self._pose_path(self.common, transition)
             first, second = (each.others for each in self.common)
-            others = BlendedExternals(first, second, transition)
+            others = BlendedAxes(first, second, transition)
             curve = PosePathCurve(one.arm, one.placement, pose_path, start[:ROBOT_AXES], others)
         # The spline of the axes sees little of how quickly the curve begins to bend.
         ends = axes.rates(np.array([0.0, 1.0]))
@@ -138,7 +139,7 @@ class _Corner:
         return PlannedBlend(zone, curve, limits, *_junctions(transition))
 
     def limits(
-        self, transition: Transition, curve: Curve, rates: Rates, slowest: float = math.inf
+        self, transition: Transition, curve: AxisPath, rates: Rates, slowest: float = math.inf
     ) -> CurveLimits:
         """Return the bounds of a blend along a curve with these derivatives of the axes.
 

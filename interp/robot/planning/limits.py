@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 
 from interp.robot.kinematics.kinematics import Array
-from interp.robot.path.axis_path import Curve, Rates
+from interp.robot.path.axis_path import AxisPath, Curve, Rates
 from interp.robot.planning.axis_limits import AxisLimits
 from interp.robot.planning.ramps import Bounds
 from interp.robot.planning.torque_limits import TorqueLimits, TorqueMargin
@@ -119,7 +119,7 @@ class CurveLimits:
 
     stretches: tuple[Stretch, ...]
 
-    def within(self, torques: TorqueLimits | None, curve: Curve) -> CurveLimits:
+    def within(self, torques: TorqueLimits | None, curve: AxisPath) -> CurveLimits:
         """Return the stretches with bounds at which no torque of the arm is exceeded."""
         if torques is None:
             return self

@@ -50,7 +50,7 @@ def ramp(
     sign = 1.0 if target >= speed_after(speed, acceleration, final, jerk) else -1.0
     start, end = sign * acceleration, sign * final  # as if speeding up
     change = sign * (target - speed)
-    peak = math.sqrt(max(jerk * change + (start * start + end * end) / 2, 0.0))
+    peak = math.sqrt(abs(jerk * change + (start * start + end * end) / 2))  # below 0 by rounding
     hold = 0.0
     if peak > most:
         hold = (change - (2 * most * most - start * start - end * end) / (2 * jerk)) / most

@@ -17,11 +17,10 @@ from interp.robot.kinematics.kinematics import Array, matrix_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.solution_choice import check_path
 from interp.robot.path.axis_path import (
-    ExternalAxes,
-    JointLine,
-    JointSpline,
-    LinearExternals,
-    Piecewise,
+    AxisPath,
+    JointCurve,
+    LinearAxes,
+    SplineAxes,
 )
 from interp.robot.path.circle import circle_through
 from interp.robot.path.pose_path import PosePath
@@ -127,7 +126,7 @@ def _pieces(
             ):
                 piece = tracks.still(np.concatenate((axes, travelled[place])), settings)
             else:
-                check_path(tracks.machine.externals, others.at(_CLOSE))
+                check_path(tracks.machine.externals, others.axes(_CLOSE))
                 piece = tracks.along(pose_path, axes, others, "SPL", settings)
                 if place:
                     gear = pose_paths[place - 1].length / pose_path.length
@@ -138,16 +137,16 @@ def _pieces(
     return tuple(pieces)
 
 
-def _others(pose_paths: Sequence[PosePath], externals: Array) -> Sequence[ExternalAxes]:
+def _others(pose_paths: Sequence[PosePath], externals: Array) -> Sequence[AxisPath]:
     """Return the external axes along each segment: a spline over the length of the chain."""
     if len(pose_paths) == 1:
-        return [LinearExternals(*externals)]
+        return [LinearAxes(*externals)]
     knots = np.cumsum([0.0, *(pose_path.length for pose_path in pose_paths)])
     from scipy.interpolate import CubicSpline
 
     spline = CubicSpline(knots, externals, bc_type="natural")
     places = zip(knots.tolist(), pose_paths, strict=False)
-    return [Piecewise(spline, start, pose_path.length) for start, pose_path in places]
+    return [SplineAxes(spline, start, pose_path.length) for start, pose_path in places]
 
 
 def _knot(pose: Pose) -> Knot:
@@ -184,13 +183,13 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
             if spans[place] == 0.0:
                 pieces.append(tracks.still(points[place], own))
                 continue
-            curve: JointLine | JointSpline
+            path: AxisPath
             if spline is None:
-                curve = JointLine(tracks.arm, own.placement, points[place], points[place + 1])
+                path = LinearAxes(points[place], points[place + 1])
             else:
-                part_of = Piecewise(spline, float(knots[place - first]), spans[place])
-                curve = JointSpline(tracks.arm, own.placement, part_of)
-                check_path(tracks.machine.every_axis, part_of.at(_CLOSE))
+                path = SplineAxes(spline, float(knots[place - first]), spans[place])
+                check_path(tracks.machine.every_axis, path.axes(_CLOSE))
+            curve = JointCurve(tracks.arm, own.placement, path)
             limits = tracks.programmed(own)
             paths = tracks.reduced_paths(curve, own)
             curve_limits = curve_limits_of(curve, tracks.limits, limits, paths)

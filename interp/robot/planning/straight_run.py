@@ -14,7 +14,7 @@ import numpy as np
 
 from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import ROBOT_AXES
-from interp.robot.path.axis_path import Curve, JointLine, LinearExternals, PosePathCurve
+from interp.robot.path.axis_path import Curve, JointCurve, LinearAxes, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine
 from interp.robot.planning.limits import CurveLimits, curve_limits_of
@@ -42,8 +42,9 @@ class StraightPart:
     @classmethod
     def of(cls, curve: Curve) -> StraightPart:
         """Return the part for a curve."""
-        if isinstance(curve, JointLine):
-            return cls(curve, float(np.linalg.norm(curve.end - curve.start)))
+        if curve.is_straight:
+            (way,), _, _ = curve.rates(np.zeros(1))
+            return cls(curve, float(np.linalg.norm(way)))
         line = curve.pose_path
         if not isinstance(line, StraightLine):
             return cls(curve, 0.0)
@@ -128,7 +129,7 @@ def extended(
 
 def straight_through(
     parts: Sequence[StraightPart], start: float = 0.0, end: float = 1.0
-) -> JointLine | PosePathCurve | None:
+) -> JointCurve | PosePathCurve | None:
     """Return the straight line from a parameter of the first curve to one of the last.
 
     Return ``None`` if they are not straight, or if a point between two of them does not lie on it.
@@ -138,28 +139,28 @@ def straight_through(
     ways = np.array([part.way for part in parts])
     ways[0] *= 1.0 - start
     ways[-1] *= end
-    if not ways.all() or not isinstance(one, JointLine | PosePathCurve):
+    if not ways.all() or not isinstance(one, JointCurve | PosePathCurve):
         return None
     if type(one) is not type(other):
         return None
-    if not isinstance(one, JointLine) and one.placement != other.placement:
+    if not isinstance(one, JointCurve) and one.placement != other.placement:
         return None
     (leaves,), (joins,) = one.axes(np.array([start])), other.axes(np.array([end]))
     shares = np.cumsum(ways)[:-1] / ways.sum()
     corners = np.array([part.curve.end for part in parts[:-1]])
-    if isinstance(one, JointLine):
-        line = JointLine(one.arm, one.placement, leaves, joins)
+    if isinstance(one, JointCurve):
+        line = JointCurve(one.arm, one.placement, LinearAxes(leaves, joins))
         return line if _is_near(line.axes(shares), corners, joins - leaves) else None
     lines = [line for line in (one.pose_path, other.pose_path) if line is not None]
     (point,), (turned,) = lines[0].at(np.array([start]))
     (there,), (turn,) = lines[1].at(np.array([end]))
     whole = StraightLine(point, there, turning(turned, turn))
-    others = LinearExternals(leaves[ROBOT_AXES:], joins[ROBOT_AXES:])
+    others = LinearAxes(leaves[ROBOT_AXES:], joins[ROBOT_AXES:])
     places, rotations = whole.at(shares)
     is_through = (
         _is_near(places, np.array([part.point for part in parts[:-1]]), whole.length)
         and _is_near(rotations, np.array([part.turn for part in parts[:-1]]), sum(whole.angles))
-        and _is_near(others.at(shares), corners[:, ROBOT_AXES:], others.end - others.start)
+        and _is_near(others.axes(shares), corners[:, ROBOT_AXES:], others.end - others.start)
     )
     if not is_through:
         return None

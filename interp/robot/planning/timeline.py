@@ -86,8 +86,9 @@ class Leg:
 
     def at(self, times: Array) -> Array:
         """Return the parameters u at times."""
-        position, *_ = self.profile.at(np.minimum(times, self.ends) - self.begins)
-        return self.stretch.start + position / self.stretch.size
+        states = self.profile.at(np.minimum(times, self.ends) - self.begins)
+        parameters: Array = self.stretch.start + states[0] / self.stretch.size
+        return parameters
 
     def state(self, time: float) -> PathState:
         """Return the state at a time."""

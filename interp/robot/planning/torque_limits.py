@@ -16,7 +16,7 @@ import numpy as np
 
 from interp.robot.arm import Load
 from interp.robot.kinematics.kinematics import Array
-from interp.robot.path.axis_path import Curve
+from interp.robot.path.axis_path import AxisPath
 
 _MARGIN = 0.95
 """Share of a torque that is used, because it is computed at samples only."""
@@ -50,7 +50,7 @@ class TorqueLimits:
         """Return the limits of the arm with these loads."""
         return self if loads == self.loads else replace(self, loads=loads)
 
-    def along(self, curve: Curve) -> TorqueMargin:
+    def along(self, curve: AxisPath) -> TorqueMargin:
         """Return what the torques leave for moving along a curve."""
         u = curve.grid
         if not _FEWEST <= len(u) <= _MOST:

@@ -15,10 +15,10 @@ from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
 from interp.robot.kinematics.placement import IpoMode
 from interp.robot.path.axis_path import (
+    AxisPath,
     Curve,
-    ExternalAxes,
-    JointLine,
-    LinearExternals,
+    JointCurve,
+    LinearAxes,
     PosePathCurve,
 )
 from interp.robot.path.circle import Circle, circle_through
@@ -140,7 +140,8 @@ class Tracks:
     def _ptp(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
         settings = motion.settings
         goal = before.goal(motion, motion.target, settings.placement)
-        curve = JointLine(self.arm, settings.placement, before.axes, goal.axes)
+        line = LinearAxes(before.axes, goal.axes)
+        curve = JointCurve(self.arm, settings.placement, line)
         limits = self.programmed(settings)
         is_still = bool(np.abs(goal.axes - before.axes).max() < _STILL)
         paths = self.reduced_paths(curve, settings)
@@ -181,7 +182,7 @@ class Tracks:
         if max(pose_path.length, swivel, rotation, travel) < _STILL:
             track = Track(motion, (self.still(before.axes, settings),), self.limits)
             return track, before.reached(before.axes, point, settings.placement)
-        others = LinearExternals(before.axes[ROBOT_AXES:], externals)
+        others = LinearAxes(before.axes[ROBOT_AXES:], externals)
         piece = self.along(pose_path, before.axes[:ROBOT_AXES], others, motion.kind, settings)
         track = Track(motion, (piece,), self.limits.carrying(settings.loads))
         axes = piece.curve.end
@@ -189,7 +190,7 @@ class Tracks:
         return track, before.reached(axes, reached, settings.placement)
 
     def along(
-        self, pose_path: PosePath, start: Array, others: ExternalAxes, kind: str, settings: Settings
+        self, pose_path: PosePath, start: Array, others: AxisPath, kind: str, settings: Settings
     ) -> Piece:
         """Return the piece for a path, from the axes of the robot at its start. Raises `Fault`."""
         limits = self.limits.carrying(settings.loads)
@@ -204,7 +205,7 @@ class Tracks:
 
     def still(self, axes: Array, settings: Settings) -> Piece:
         """Return a piece of length zero."""
-        curve = JointLine(self.arm, settings.placement, axes, axes)
+        curve = JointCurve(self.arm, settings.placement, LinearAxes(axes, axes))
         return Piece(curve, curve_limits_of(curve, self.limits, self.limits, ()), is_still=True)
 
     def _point(self, motion: Motion, target: Target, before: Programmed) -> tuple[float, ...]:

@@ -12,7 +12,7 @@ import pytest
 from interp.port.requests import At
 from interp.robot.arm import Approximation, Motion, Settings
 from interp.robot.kinematics.placement import Placement
-from interp.robot.path.axis_path import BlendedAxes
+from interp.robot.path.axis_path import BlendedAxes, JointCurve
 from interp.robot.path.pose_path import Blend
 from interp.robot.path.programmed_targets import Programmed
 from interp.robot.planning.blend_zones import Zone
@@ -131,7 +131,7 @@ def test_ptp_blends_in_the_space_of_axes(driver: Driver) -> None:
     driver.move("PTP", {"A1": 100.0}, criteria=("C_PTP",), **values)
     driver.move("PTP", {"A2": 0.0}, **values)
     curve = blend(driver).curve
-    assert isinstance(curve, BlendedAxes)
+    assert isinstance(curve, JointCurve)
     axes = curve.axes(np.linspace(0.0, 1.0, 50))[:, :2]
     # 50 % of 90 degrees on the first side; half of the path is that on the second.
     assert np.allclose([(55.0, -90.0), (100.0, -45.0)], axes[[0, -1]])
@@ -150,12 +150,14 @@ def test_mixed_blends(driver: Driver, kinds: tuple[str, str]) -> None:
     driver.move(kinds[0], CORNER, criteria=criteria, velocity=0.5, **values)
     driver.move(kinds[1], LAST, velocity=0.5, **values)
     curve = blend(driver).curve
-    assert isinstance(curve, BlendedAxes)
-    share = curve.transition.after if kinds[1] == "LIN" else curve.transition.before
+    assert isinstance(curve, JointCurve)
+    path = curve.path
+    assert isinstance(path, BlendedAxes)
+    share = path.transition.after if kinds[1] == "LIN" else path.transition.before
     assert 30.0 / (100.0 if kinds[1] == "LIN" else 300.0) == pytest.approx(share)
-    (rates, bends, _), zone = curve.rates(np.array([0.0, 1.0])), curve.transition
-    leaving, leaving_bend, _ = curve.first.rates(np.array([1.0 - zone.before]))
-    joining, joining_bend, _ = curve.second.rates(np.array([zone.after]))
+    (rates, bends, _), zone = curve.rates(np.array([0.0, 1.0])), path.transition
+    leaving, leaving_bend, _ = path.first.rates(np.array([1.0 - zone.before]))
+    joining, joining_bend, _ = path.second.rates(np.array([zone.after]))
     one, other = zone.rates(np.array([0.0]))[0], zone.rates(np.array([1.0]))[1]
     assert np.allclose(rates, [one[0] * leaving[0], other[0] * joining[0]])
     one_bend = one[0] ** 2 * leaving_bend[0] + one[1] * leaving[0]
@@ -172,7 +174,7 @@ def test_other_frames_blend_in_the_space_of_axes(driver: Driver) -> None:
     values = {"approximation": Approximation(cdis=30.0)}
     driver.move("LIN", CORNER, criteria=("C_DIS",), **values)
     driver.move("LIN", {**LAST, "X": 390.0}, placement=Placement(base=Pose.of(10.0)), **values)
-    assert isinstance(blend(driver).curve, BlendedAxes)
+    assert isinstance(blend(driver).curve, JointCurve)
     driver.play()
     assert (400.0, -100.0, 600.0) == pytest.approx(driver.tool(driver.now))
     driver.check_limits()

@@ -12,7 +12,7 @@ import pytest
 from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solution_choice import follow
-from interp.robot.path.axis_path import JointLine, LinearExternals, PosePathCurve
+from interp.robot.path.axis_path import JointCurve, LinearAxes, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine, poses_of
 from interp.robot.planning.axis_limits import axis_limits
@@ -34,7 +34,7 @@ def line(
     pose = arm.forward(start[:6])
     still = turning(pose[:3, :3], pose[:3, :3])
     pose_path = StraightLine(pose[:3, 3], pose[:3, 3] + np.array(shift), still)
-    return PosePathCurve(arm, Placement(), pose_path, start[:6], LinearExternals(NONE, NONE))
+    return PosePathCurve(arm, Placement(), pose_path, start[:6], LinearAxes(NONE, NONE))
 
 
 def test_limits_are_those_of_the_machine_data(machine: MachineData) -> None:
@@ -56,9 +56,8 @@ def test_percentages(machine: MachineData, percent: float, share: float) -> None
 
 def test_a_straight_line_of_axes(machine: MachineData) -> None:
     """The leading axis sets speed and acceleration of a PTP [MOT-01]."""
-    curve = JointLine(
-        kinematics_of(machine), Placement(), START, START + np.array([90, 10, 0, 0, 0, 0, 100])
-    )
+    path = LinearAxes(START, START + np.array([90, 10, 0, 0, 0, 0, 100]))
+    curve = JointCurve(kinematics_of(machine), Placement(), path)
     limits = axis_limits(machine)
     (stretch,) = curve_limits_of(curve, limits, limits, ()).stretches
     assert (4.0, 40.0 / 3.0) == pytest.approx(
