@@ -90,15 +90,17 @@ def missing_blends(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     Both have a length, as far as their times tell.
     """
     for one, other in pairwise(motions):
-        settings = one.motion.settings.approximation
-        sizes = {"C_PTP": settings.cptp, "C_VEL": settings.cvel, "C_ORI": settings.cori}
+        own, next_own = (each.motion.settings.approximation for each in (one, other))
+        sizes = {"C_PTP": own.cptp, "C_VEL": own.cvel, "C_ORI": own.cori}
         if not one.motion.criteria or not one.stops or not follows(one, other):
             continue
-        is_wanted = sizes.get(one.motion.criteria[0], settings.cdis) > 0.0
+        zones = [sizes.get(criterion, own.cdis) for criterion in one.motion.criteria]
         if other.motion.kind.endswith("PTP"):
-            is_wanted = is_wanted and other.motion.settings.approximation.cptp > 0.0
+            zones.append(next_own.cptp)
+        elif one.motion.kind.endswith("PTP"):
+            zones.append(own.cdis)
         is_in_time = other.planned < one.start < one.end and other.start < other.end
-        if is_wanted and is_in_time:
+        if min(zones) > 0.0 and is_in_time:
             law = "a motion is approximated where the next is planned before it begins"
             yield one.broken(law, "it stops")
 
