@@ -33,11 +33,10 @@ from interp.values.faults import fault
 from interp.values.formats import sread, swrite
 from interp.values.geometric_operator import RADIAN, inverted, radians
 from interp.values.operators import Kind, Primitive
+from interp.values.predefined_values import word
 from interp.values.texts import TEXTS, Outcome
 from interp.values.values import (
-    EnumValue,
     Value,
-    constant,
     converted,
     has_value,
     known,
@@ -150,8 +149,8 @@ def _varstate(surroundings: Surroundings, name: Value) -> Outcome:
     """Return INITIALIZED if any part of the variable has a value [TYP-18]."""
     found = surroundings.find(text_of(name))
     if found is None:
-        return _word("VAR_STATE", "UNKNOWN"), {}
-    return _word("VAR_STATE", "INITIALIZED" if has_value(found[1]) else "DECLARED"), {}
+        return word("VAR_STATE", "UNKNOWN"), {}
+    return word("VAR_STATE", "INITIALIZED" if has_value(found[1]) else "DECLARED"), {}
 
 
 _SCALARS: Mapping[Type, str] = {INT: "INT", REAL: "REAL", BOOL: "BOOL", CHAR: "CHAR"}
@@ -165,20 +164,14 @@ def _vartype(surroundings: Surroundings, name: Value) -> Outcome:
         type_ = type_.element
     match type_:
         case Enumeration():
-            word = "ENUM"
+            kind = "ENUM"
         case Structure():
-            word = type_.name.upper() if type_.name.upper() in CARTESIAN | AXES else "STRUC"
+            kind = type_.name.upper() if type_.name.upper() in CARTESIAN | AXES else "STRUC"
         case None:
-            word = "UNKNOWN"
+            kind = "UNKNOWN"
         case _:
-            word = _SCALARS.get(type_, "UNKNOWN")
-    return _word("VAR_TYPE", f"TYP_{word}"), {}
-
-
-def _word(type_name: str, name: str) -> EnumValue:
-    type_ = System.load().types[type_name]
-    assert isinstance(type_, Enumeration)
-    return constant(type_, name)
+            kind = _SCALARS.get(type_, "UNKNOWN")
+    return word("VAR_TYPE", f"TYP_{kind}"), {}
 
 
 # ------------------------------------------------------------------------------- all of them

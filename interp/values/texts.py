@@ -13,15 +13,14 @@ from collections.abc import Callable, Mapping
 from string import ascii_lowercase, ascii_uppercase
 from typing import Any
 
-from grammar.semantics.predefined import System
-from grammar.semantics.types import INT, INT_MAX, INT_MIN, REAL, Structure, Type
+from grammar.semantics.types import INT, INT_MAX, INT_MIN, Type
 from interp.values.faults import Fault, fault
+from interp.values.predefined_values import empty_structure
 from interp.values.values import (
     ArrayValue,
     EnumValue,
     StructureValue,
     Value,
-    empty,
     single,
     text_of,
 )
@@ -121,25 +120,24 @@ def _bool_of(text: str) -> bool | None:
     return {"TRUE": True, "FALSE": False}.get(text.translate(_UPPER))
 
 
-def _structure_of(type_: Structure, text: str) -> StructureValue | None:
+def _structure_of(name: str, text: str) -> StructureValue | None:
     """Return a structure from ``{X 1.0,Y 2.0}``, with or without braces, type and names [FCT-06].
 
     Without names the text must have all components in order (unconfirmed). With names, components
     that are left out get no value, as in an aggregate of a program [TYP-19]. Return ``None`` if the
     text is malformed.
     """
-    inner = re.fullmatch(rf"\{{(?:\s*{type_.name}\s*:)?(.*)\}}", text, re.IGNORECASE | re.DOTALL)
+    inner = re.fullmatch(rf"\{{(?:\s*{name}\s*:)?(.*)\}}", text, re.IGNORECASE | re.DOTALL)
     parts = [part.split() for part in (inner[1] if inner else text).split(",")]
-    names = [member.name for member in type_.members]
+    value = empty_structure(name)
+    names = [member.name for member in value.type.members]
     if len(parts) == len(names) and all(len(part) == 1 for part in parts):
         parts = [[name, *part] for name, part in zip(names, parts, strict=True)]
-    value = empty(type_)
-    assert isinstance(value, StructureValue)
     for part in parts:
         place = names.index(part[0].upper()) if part and part[0].upper() in names else None
         if len(part) != 2 or place is None or value.members[place] is not None:
             return None
-        number = _number_of(type_.members[place].type, part[1])
+        number = _number_of(value.type.members[place].type, part[1])
         if number is None:
             return None
         value.members[place] = number
@@ -161,10 +159,7 @@ def _reader(read: Callable[[str], Value | None]) -> Callable[..., Outcome]:
 
 
 def _structure_reader(name: str) -> Callable[..., Outcome]:
-    type_ = System.load().types[name]
-    assert isinstance(type_, Structure)
-    assert all(member.type in (INT, REAL) for member in type_.members)
-    return _reader(lambda text: _structure_of(type_, text))
+    return _reader(lambda text: _structure_of(name, text))
 
 
 def _strtostring(text: Value, target: Value | None) -> Outcome:
