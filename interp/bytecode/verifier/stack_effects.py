@@ -1,8 +1,9 @@
 """The steps of stack effects: each one checks, pops or pushes something on the abstract stack.
 
 The table of the instruction set lists the steps of every instruction, see
-`interp.bytecode.instruction_set.effects`. Each step is a method with the same name here:
-``check_array``, ``take_any``, or just ``array_view`` for an item that is popped or pushed.
+`interp.bytecode.instruction_set.effects`. Each step is a method with the same name here, such as
+``check_array`` and ``take_any``. What is popped or pushed otherwise is an item, ``array_view`` for
+instance, of `interp.bytecode.verifier.stack_items`.
 """
 
 from __future__ import annotations
@@ -31,17 +32,16 @@ from interp.bytecode.program import (
     Record,
     inputs_of,
 )
-from interp.bytecode.verifier.cell_types import CellTypes
 from interp.bytecode.verifier.signatures import may_be_missing
+from interp.bytecode.verifier.stack_items import StackItems
 from interp.bytecode.verifier.stack_types import (
     NOTHING,
     Refused,
     Stack,
     StackItem,
     item_of,
-    view_of,
+    reference_to,
 )
-from interp.bytecode.verifier.stack_types import reference as reference_to
 
 _MOST_DIMENSIONS = 3
 _INT = SCALARS.index("INT")
@@ -54,9 +54,9 @@ class StackEffects:
         self._program = program
         self._code = code
         self._types = program.types
-        self._cells = CellTypes(program, code)
+        self._items = StackItems(program, code)
         self.empty = self._stack = Stack()
-        #: The item that ``t`` or ``ENUM`` denotes in the effect of the current instruction.
+        #: What ``t``, ``ENUM`` or ``@t`` has found, where it stands again in the effect.
         self._same = NOTHING
 
     def after(self, instruction: Instruction, before: Stack) -> Stack:
@@ -76,10 +76,12 @@ class StackEffects:
         given = [SCALARS.index(a) if isinstance(a, str) else operands[a] for a in step.arguments]
         if not step.is_item:
             getattr(self, f"{step.verb}_{step.name}")(*given)
-        elif step.verb == "take":
-            self._take(getattr(self, step.name)(*given))
+            return
+        item = self._same if step.name == "same" else getattr(self._items, step.name)(*given)
+        if step.verb == "take":
+            self._take(item)
         else:
-            self._push(getattr(self, step.name)(*given))
+            self._push(item)
 
     def _take(self, wanted: StackItem) -> None:
         if self._pop() != wanted:
@@ -94,97 +96,6 @@ class StackEffects:
 
     def _push(self, item: StackItem) -> None:
         self._stack = self._stack.with_item(item)
-
-    # ----------------------------------------------------------------------- items
-
-    def value(self, type_: int) -> StackItem:
-        """Return a value of this type."""
-        return StackItem(Mode.IN, type_)
-
-    def nothing(self) -> StackItem:
-        """Return the item for an argument that was left out."""
-        return NOTHING
-
-    def same(self) -> StackItem:
-        """Return the item that the last ``take_any`` or ``take_reference_to_cell`` found."""
-        return self._same
-
-    def local(self, cell: int) -> StackItem:
-        """Return a value of the type of a cell in the frame."""
-        return self._cells.local(cell)
-
-    def missing_local(self, cell: int) -> StackItem:
-        """The same where it may be missing."""
-        return replace(self.local(cell), is_missing=True)
-
-    def data(self, cell: int) -> StackItem:
-        """Return a value of the type of a cell in the data lists."""
-        return self._cells.data(cell)
-
-    def reference(self, type_: int) -> StackItem:
-        """Return a reference to this type."""
-        return reference_to(type_)
-
-    def parameter(self, place: int) -> StackItem:
-        """Return the reference that is passed for a parameter by reference."""
-        return self._cells.parameter(place, Mode.REF)
-
-    def element(self, array: int) -> StackItem:
-        """Return a reference to an element of an array type."""
-        return reference_to(self._element(array))
-
-    def element_value(self, array: int) -> StackItem:
-        """Return the value of an element of an array type."""
-        return self._cell_of(self.element(array))
-
-    def view(self, element: int, dimensions: int) -> StackItem:
-        """Return a view of an array with elements of this type."""
-        return view_of(element, dimensions)
-
-    def missing_view(self, element: int, dimensions: int) -> StackItem:
-        """Return such a view that may be missing because the argument was left out."""
-        return replace(view_of(element, dimensions), is_missing=True)
-
-    def letters(self) -> StackItem:
-        """Return a one-dimensional view of CHARs."""
-        return view_of(SCALARS.index("CHAR"), 1)
-
-    def array_view(self, array: int) -> StackItem:
-        """Return a view of a whole array of this type."""
-        return view_of(self._element(array), self._rank(array))
-
-    def row(self, array: int, count: int) -> StackItem:
-        """Return a view of the row of an array that ``count`` leading indices select."""
-        return view_of(self._element(array), self._rank(array) - count)
-
-    def view_parameter(self, place: int) -> StackItem:
-        """Return the view that is passed for an array parameter."""
-        return self._cells.parameter(place, Mode.VIEW)
-
-    def missing_view_parameter(self, place: int) -> StackItem:
-        """Return the view for an array parameter whose argument may be left out."""
-        return replace(self.view_parameter(place), is_missing=True)
-
-    def view_element(self, place: int) -> StackItem:
-        """Return a reference to an element of an array parameter."""
-        return reference_to(self.view_parameter(place).type)
-
-    def view_row(self, place: int, count: int) -> StackItem:
-        """Return a view of the row of an array parameter that ``count`` leading indices select."""
-        whole = self.view_parameter(place)
-        return view_of(whole.type, whole.cells - 1 - count)
-
-    def _element(self, array: int) -> int:
-        return self._cells.element(self._cells.array(array))
-
-    def _rank(self, array: int) -> int:
-        return len(self._cells.array(array).sizes)
-
-    def _cell_of(self, item: StackItem) -> StackItem:
-        """Return the value in the cell that a reference refers to."""
-        if item.mode is not Mode.REF or not isinstance(self._types[item.type], Plain):
-            raise Refused("a reference to a single cell is required")
-        return StackItem(Mode.IN, item.type)
 
     # ----------------------------------------------------------------------- taken by rules
 
@@ -211,11 +122,11 @@ class StackEffects:
 
     def take_reference_to_cell(self) -> None:
         """Pop a reference to a cell of any type."""
-        self._same = self._cell_of(self._pop())
+        self._same = self._items.cell_of(self._pop())
 
     def take_reference_to_same(self) -> None:
         """Pop a reference to a cell of the type of the value that was popped before."""
-        if self._cell_of(self._pop()) != self._same:
+        if self._items.cell_of(self._pop()) != self._same:
             raise Refused("the value and the cell have different types")
 
     def take_whole(self, offset: int, number: int) -> None:
@@ -223,20 +134,20 @@ class StackEffects:
         item = self._pop()
         if item.mode is not Mode.REF:
             raise Refused("a reference is required")
-        self._cells.check_part(self._types[item.type], offset, number)
+        self._items.check_part(self._types[item.type], offset, number)
 
     def take_integers(self, count: int) -> None:
         """Pop this number of INTs."""
         for _ in range(count):
-            self._take(self.value(_INT))
+            self._take(self._items.value(_INT))
 
     def take_indices(self, array: int) -> None:
         """Pop one index for each dimension of an array type."""
-        self.take_integers(self._rank(array))
+        self.take_integers(self._items.rank(array))
 
     def take_view_indices(self, place: int) -> None:
         """Pop one index for each dimension of an array parameter."""
-        self.take_integers(self.view_parameter(place).cells - 1)
+        self.take_integers(self._items.view_parameter(place).cells - 1)
 
     # ----------------------------------------------------------------------- calls and requests
 
@@ -262,7 +173,7 @@ class StackEffects:
         """Push the result of a routine, if it has one."""
         result = self._program.codes[number].result
         if result is not None:
-            self._push(self.value(result))
+            self._push(self._items.value(result))
 
     def take_request(self, number: int) -> None:
         """Pop the inputs of a request."""
@@ -297,13 +208,13 @@ class StackEffects:
 
     def _push_entry(self, entry: Ask | Builtin) -> None:
         if entry.result is not None and isinstance(self._types[entry.result], Plain):
-            self._push(self.value(entry.result))
+            self._push(self._items.value(entry.result))
 
     def take_own_result(self) -> None:
         """Pop the result of this code object; raises `Refused` if the stack is not empty then."""
         if self._code.result is None:
             raise Refused("the code object has no result")
-        self._take(self.value(self._code.result))
+        self._take(self._items.value(self._code.result))
         self.check_empty()
 
     # ----------------------------------------------------------------------- checks
@@ -337,23 +248,23 @@ class StackEffects:
 
     def check_array(self, number: int) -> None:
         """Check that a type is an array."""
-        self._cells.array(number)
+        self._items.array(number)
 
     def check_row(self, array: int, count: int) -> None:
         """Check that this number of indices selects a row of an array type."""
-        _check_indices(count, self._rank(array))
+        _check_indices(count, self._items.rank(array))
 
     def check_view_row(self, place: int, count: int) -> None:
         """Check that this number of indices selects a row of an array parameter."""
-        _check_indices(count, self.view_parameter(place).cells - 1)
+        _check_indices(count, self._items.view_parameter(place).cells - 1)
 
     def check_part_of_local(self, cell: int, number: int) -> None:
         """Check that a part of this type begins at a cell of the frame."""
-        self._cells.check_local(cell, number)
+        self._items.check_part(*self._items.variable(cell), number)
 
     def check_part_of_data(self, cell: int, number: int) -> None:
         """Check that a part of this type begins at a cell of the data lists."""
-        self._cells.check_data(cell, number)
+        self._items.check_part(*self._items.data_variable(cell), number)
 
     def check_positions(self, to: int, of: int) -> None:
         """Check that values of both types can be assigned to each other as positions."""
@@ -368,21 +279,21 @@ class StackEffects:
 
     def check_for_local(self, counter: int, limit: int, step: int) -> None:
         """Check that a FOR loop can count in a cell of the frame."""
-        self._check_counter(self.local(counter), limit, step)
+        self._check_counter(self._items.local(counter), limit, step)
 
     def check_for_data(self, counter: int, limit: int, step: int) -> None:
         """Check that a FOR loop can count in a cell of the data lists."""
-        self._check_counter(self.data(counter), limit, step)
+        self._check_counter(self._items.data(counter), limit, step)
 
     def _check_counter(self, counter: StackItem, limit: int, step: int) -> None:
-        integer = self.value(_INT)
-        if counter != integer or self.local(limit) != integer or step == 0:
+        integer = self._items.value(_INT)
+        if counter != integer or self._items.local(limit) != integer or step == 0:
             raise Refused("counter and limit must be INT, and the step must not be 0")
 
     def check_told(self, place: int, dimensions: int) -> None:
         """Check that the trace can name the :OUT parameter through which something was assigned."""
         self.check_rank(dimensions, 0)
-        slot = self._cells.slot(place)
+        slot = self._items.slot(place)
         if (
             slot.offset != place
             or not isinstance(slot.variable, Parameter)

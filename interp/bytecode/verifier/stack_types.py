@@ -54,7 +54,7 @@ class Stack:
         return found
 
 
-def reference(type_: int) -> StackItem:
+def reference_to(type_: int) -> StackItem:
     """Return a reference to a place of this type."""
     return StackItem(Mode.REF, type_)
 
