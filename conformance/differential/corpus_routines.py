@@ -9,7 +9,7 @@ for a change that never happens is stopped.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Final, Literal
 
@@ -111,25 +111,18 @@ def _is_added(routine: Routine) -> bool:
     return routine.name.startswith("KRL_CALLS_")
 
 
+@dataclass(slots=True)
 class _Project:
     """The routines of one project, which is compiled once."""
 
-    def __init__(
-        self,
-        programs: Sequence[CheckedProgram],
-        called: Mapping[tuple[str, str], str],
-        executors: Sequence[str],
-        effort: Effort,
-    ) -> None:
-        self._programs = programs
-        self._called = called
-        self._executors = executors
-        self._effort = effort
-        self._limits = Limits(statements=effort.statements)
-        self._compiled: Compiled | None = None
-        self._verified: Verified | None = None
-        self._values: Mapping[str, Value] = {}
-        self._reason = ""
+    _programs: Sequence[CheckedProgram]
+    _called: Mapping[tuple[str, str], str]
+    _executors: Sequence[str]
+    _effort: Effort
+    _compiled: Compiled | None = None
+    _verified: Verified | None = None
+    _values: Mapping[str, Value] = field(default_factory=dict)
+    _reason: str = ""
 
     def trials(self) -> Iterator[Trial]:
         """Yield the trial of each routine."""
@@ -203,16 +196,17 @@ class _Project:
     def _executor(
         self, executor: str, program: CheckedProgram, start: Routine, sink: Sink
     ) -> Executor:
+        limits = Limits(statements=self._effort.statements)
         if executor == "tree":
-            return TreeExecutor(program, start.name, self._limits, sink)
+            return TreeExecutor(program, start.name, limits, sink)
         assert self._verified is not None, "only what is verified runs"
         assert self._compiled is not None, "only what is compiled is verified"
         number = self._compiled.starts[start.table.routine]
         if executor == "vm":
-            return Machine(self._verified, number, self._limits, sink)
+            return Machine(self._verified, number, limits, sink)
         from interp.native.machine import Machine as NativeMachine
 
-        return NativeMachine(self._verified, number, self._limits, sink)
+        return NativeMachine(self._verified, number, limits, sink)
 
     def _differences(self, seen: Mapping[str, Observed]) -> dict[str, str]:
         first, *others = self._executors

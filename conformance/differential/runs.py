@@ -97,22 +97,20 @@ class _CodeHandles:
                         self.conditions.append(item.condition)
 
 
+@dataclass(slots=True)
 class _Driver:
     """Runs one executor in one world."""
 
-    def __init__(
-        self, executor: Executor, world: RandomWorld, trace: Trace, allowed: int | None
-    ) -> None:
-        self.executor = executor
-        #: The reply to `StopAdvance`, which is then no fact; ``None`` makes each of them a fact.
-        self.allowed = allowed
-        self.world = world
-        self.trace = trace
-        self.known = _CodeHandles()
-        #: For each running action: the depth when it was entered, and the depth RESUME returns to.
-        self.inside: list[tuple[int, int]] = []
-        self.entered = 0
-        self.is_over = False
+    executor: Executor
+    world: RandomWorld
+    trace: Trace
+    #: The reply to `StopAdvance`, which is then no fact; ``None`` makes each of them a fact.
+    allowed: int | None
+    known: _CodeHandles = field(default_factory=_CodeHandles)
+    #: For each running action: the depth when it was entered, and the depth RESUME returns to.
+    inside: list[tuple[int, int]] = field(default_factory=list)
+    entered: int = 0
+    is_over: bool = False
 
     def run(self) -> None:
         """Run the program to its end, or until it has made too many requests."""

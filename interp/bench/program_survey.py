@@ -152,24 +152,17 @@ class _Running:
         return {"origin": name, "damage": damage, "path": self.paths[place], **row}
 
 
+@dataclass(slots=True, eq=False)
 class _Survey:
     """Assigns an origin at a time to each process."""
 
-    def __init__(
-        self,
-        pool: StickyPool,
-        store: ResultStore,
-        bounds: RunBounds,
-        on_found: Callable[[int], None],
-        on_done: Callable[[], None],
-    ) -> None:
-        self._pool = pool
-        self._store = store
-        self._bounds = bounds
-        self._on_found = on_found
-        self._on_done = on_done
-        #: The program of each pending result; ``None`` for the list of an origin's programs.
-        self._pending: dict[Future[Any], tuple[_Running, int | None]] = {}
+    _pool: StickyPool
+    _store: ResultStore
+    _bounds: RunBounds
+    _on_found: Callable[[int], None]
+    _on_done: Callable[[], None]
+    #: The program of each pending result; ``None`` for the list of an origin's programs.
+    _pending: dict[Future[Any], tuple[_Running, int | None]] = field(default_factory=dict)
 
     def run(self, origins: Sequence[Origin]) -> Iterator[SurveyedOrigin]:
         """See `survey`."""

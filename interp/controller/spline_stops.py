@@ -8,19 +8,18 @@ from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Task
 from interp.port.requests import SplineStop
+from support.lazy_dataclass import dataclass
 
 
+@dataclass(slots=True, eq=False)
 class SplineStops:
     """Stops the arm at a STOP WHEN PATH place, or after it if that can no longer be reached."""
 
-    def __init__(
-        self, state: ControllerState, arm: ArmControl, queue: MotionQueue, panel: OperatorPanel
-    ) -> None:
-        self._state = state
-        self._arm = arm
-        self._queue = queue
-        self._panel = panel
-        self._stopped_at: tuple[Task, SplineStop] | None = None
+    _state: ControllerState
+    _arm: ArmControl
+    _queue: MotionQueue
+    _panel: OperatorPanel
+    _stopped_at: tuple[Task, SplineStop] | None = None
 
     @property
     def is_waiting(self) -> bool:

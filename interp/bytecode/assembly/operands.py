@@ -11,10 +11,12 @@ from interp.bytecode.assembly.syntax import Key, Line, key
 from interp.bytecode.instruction_set.table import shape
 from interp.bytecode.program import Instruction, Mode, Parameter, Slot
 from interp.values.faults import FAULTS
+from support.lazy_dataclass import dataclass
 
 _FAULTS = {slug: kind.code for slug, kind in FAULTS.items()}
 
 
+@dataclass(frozen=True, slots=True)
 class Operands:
     """Reads the instructions of one code object.
 
@@ -22,12 +24,9 @@ class Operands:
     locals.
     """
 
-    def __init__(
-        self, symbols: Symbols, targets: Mapping[str, int], frame: Mapping[Key, Slot]
-    ) -> None:
-        self._symbols = symbols
-        self._targets = targets
-        self._frame = frame
+    _symbols: Symbols
+    _targets: Mapping[str, int]
+    _frame: Mapping[Key, Slot]
 
     def instruction(self, line: Line) -> Instruction:
         """Return the instruction in a line."""

@@ -29,16 +29,14 @@ class _DataLists:
 DATA_LISTS: Final = _DataLists()
 
 
+@dataclass(slots=True, eq=False)
 class Site:
     """The place of an instruction: its code object, its index, and the operations around it."""
 
-    __slots__ = ("after", "body", "code", "place")
-
-    def __init__(self, code: int, place: int, body: list[Operation], after: Operation) -> None:
-        self.code = code
-        self.place = place
-        self.body = body
-        self.after = after
+    code: int
+    place: int
+    body: list[Operation]
+    after: Operation
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,18 +17,17 @@ from interp.controller.state.tasks import ALWAYS, Answer, Blocked, Level, LevelK
 from interp.port.requests import At, CodeHandle, End, SwitchSignal
 from interp.robot.api.commands import CallCommand
 from interp.values.faults import Fault
+from support.lazy_dataclass import dataclass
 
 
+@dataclass(slots=True, eq=False)
 class Levels:
     """Pushes and pops the levels of programs."""
 
-    def __init__(
-        self, state: ControllerState, arm: ArmControl, positions: Positions, queue: MotionQueue
-    ) -> None:
-        self._state = state
-        self._arm = arm
-        self._positions = positions
-        self._queue = queue
+    _state: ControllerState
+    _arm: ArmControl
+    _positions: Positions
+    _queue: MotionQueue
 
     def enter(
         self,

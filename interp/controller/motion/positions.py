@@ -31,6 +31,7 @@ from interp.values.faults import fault
 from interp.values.poses import IDENTITY, Pose
 from interp.values.predefined_values import empty_structure
 from interp.values.values import StructureValue, single
+from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.kinematics import Kinematics
@@ -76,17 +77,15 @@ def word_of(value: Any) -> str:
     return str(value).upper()
 
 
+@dataclass(slots=True, eq=False)
 class FramesInForce:
     """$BASE, $TOOL, $ROBROOT and $IPO_MODE, in the advance run and in the main run."""
 
-    def __init__(
-        self, variables: Variables, machine: MachineData | None, core: ControlCore
-    ) -> None:
-        self._variables = variables
-        self._machine = machine
-        self._core = core
-        #: The frame that EK returned last, and the kinematic system that carries it.
-        self._coupled: tuple[Pose, Carrier] | None = None
+    _variables: Variables
+    _machine: MachineData | None
+    _core: ControlCore
+    #: The frame that EK returned last, and the kinematic system that carries it.
+    _coupled: tuple[Pose, Carrier] | None = None
 
     def couple(self, frame: Pose, table: Carrier) -> None:
         """Let $BASE move with external axes as long as it equals the frame that EK returned."""
