@@ -39,6 +39,7 @@ from interp.bytecode.program import (
     Record,
     variables,
 )
+from interp.bytecode.verifier.successors import targets
 from interp.values.faults import FAULTS
 
 _FAULTS = {kind.code: slug for slug, kind in FAULTS.items()}
@@ -193,9 +194,9 @@ class _Writer:
         yield f"  stack {code.stack}"
         yield "begin"
         frame = _Frame(self._program, code, names)
-        targets = _targets(code)
+        jumped_to = {target for one in code.instructions for target in targets(one)}
         for place, instruction in enumerate(code.instructions):
-            if place in targets:
+            if place in jumped_to:
                 yield f"L{place}:"
             operands = " ".join(self._operands(frame, instruction))
             line = f"  {instruction.op.name} {operands}".rstrip()
@@ -284,18 +285,6 @@ def _constant_operand(kind: str, operand: int) -> str:
         case "char":
             return string_text(chr(operand))
     return str(operand)
-
-
-def _targets(code: Code) -> set[int]:
-    """Return the instructions that are jump targets."""
-    return {
-        operand
-        for instruction in code.instructions
-        for kind, operand in zip(
-            shape(instruction.op.name).operands, instruction.operands, strict=True
-        )
-        if kind == "target"
-    }
 
 
 def _wanted(program: Program, instruction: Instruction) -> Type | None:
