@@ -17,14 +17,13 @@ from grammar.semantics.types import BOOL, INT, Enumeration
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Raw
 from interp.bytecode.program import CodeKind, Program
-from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm import executor as vm
 from interp.bytecode.vm.names import InFrame, Names
 from interp.bytecode.vm.services import Services
 from interp.bytecode.vm.state import Call, Completion, OperandStack, Operation, State
 from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.native._core import Core
-from interp.port.events import Kind, Sink, wanting
+from interp.port.events import Kind, wanting
 from interp.port.executor import Reader
 from interp.port.inspection import RELATIONS, Breaks, Guard
 from interp.port.requests import Request
@@ -255,21 +254,10 @@ def _then(act: Callable[[], None], after: Operation) -> Operation:
 class Machine(vm.Machine):
     """Runs a verified program in C, otherwise like `interp.bytecode.vm.executor.Machine`."""
 
-    def __init__(
-        self,
-        verified: Verified,
-        routine: str | int,
-        limits: Limits | None = None,
-        sink: Sink | None = None,
-        random: Callable[[], float] | None = None,
-        *,
-        beside: vm.Machine | None = None,
-    ) -> None:
-        self._traced = sum(bit for kind, bit in _TRACED.items() if wanting(sink, kind) is not None)
-        super().__init__(verified, routine, limits, sink, random, beside=beside)
-
     def _made_state(self, limits: Limits) -> State:
+        sink = self._sink
         beside = cast("_State", self._together[0]._state) if self._together else None
+        self._traced = sum(bit for kind, bit in _TRACED.items() if wanting(sink, kind) is not None)
         image, depths = self._verified.image, self._verified.depths
         return cast("State", _State(image, depths, self._traced, limits.depth, beside))
 

@@ -95,6 +95,7 @@ class Machine:
         self._verified = verified
         self._limits = limits = limits or Limits()
         self._random = random or Randomness()
+        self._sink = sink
         self._program = program
         self._together: list[Machine] = [] if beside is None else beside._together
         self._state = self._made_state(limits)
