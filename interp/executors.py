@@ -82,7 +82,7 @@ class Prepared:
         return kept(CODE, what, self._verified)
 
     def _verified(self) -> Verified:
-        from interp.bytecode.compiler import compile_program
+        from interp.bytecode.compiler.project import compile_program
         from interp.bytecode.verifier.verify import verify
 
         named = []
@@ -95,7 +95,7 @@ class Prepared:
         """Return a new executor; raise `LinkError`, and `ValueError` for an unknown name."""
         match name:
             case "tree":
-                from interp.tree import TreeExecutor
+                from interp.tree.executor import TreeExecutor
 
                 return TreeExecutor(self.program, self.routine, limits, sink)
             case "vm":

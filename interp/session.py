@@ -238,7 +238,7 @@ def _system_values(program: CheckedProgram) -> Mapping[str, Value]:
     """Return the values of system variables in data lists; fast if there are none."""
     if next(data_lists(program), None) is None:
         return {}
-    from interp.tree import system_values
+    from interp.tree.memory import system_values
 
     return system_values(program)
 

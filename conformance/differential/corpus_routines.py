@@ -19,7 +19,7 @@ from conformance.differential.runs import facts_of
 from conformance.differential.undisturbed_run import Observed, difference, observe
 from grammar.check.project.framework import Findings, check_module
 from grammar.syntax.source import Source
-from interp.bytecode.compiler import Compiled, compile_program
+from interp.bytecode.compiler.project import Compiled, compile_program
 from interp.bytecode.verifier.verify import VerificationError, Verified, verify
 from interp.bytecode.vm.executor import Machine
 from interp.port.events import Sink
@@ -27,7 +27,8 @@ from interp.port.executor import Executor
 from interp.port.requests import Crash, End, Fail, Value
 from interp.program.load import CheckedProgram, Limits, Routine, load_all
 from interp.program.routine_callers import with_callers
-from interp.tree import TreeExecutor, system_values
+from interp.tree.executor import TreeExecutor
+from interp.tree.memory import system_values
 from interp.values.faults import BudgetExhausted, Fault, LinkError
 
 #: The stage that a routine reaches: it cannot be called, has errors, names something that does not

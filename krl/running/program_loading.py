@@ -52,7 +52,7 @@ def compile_project(file: Path, *, strict: bool = False) -> tuple[Image, list[st
     """Return the image of the program, and why files were left out; like `load_program`, cached."""
 
     def compiled(sources: "list[Source]", main: str, unread: list[str]) -> Image:
-        from interp.bytecode.compiler import compile_program
+        from interp.bytecode.compiler.project import compile_program
         from interp.bytecode.verifier.verify import VerificationError, verify
         from interp.program.load import load
         from interp.values.faults import LinkError

@@ -8,7 +8,7 @@ import pytest
 from conformance.external_backend import NotConforming, prove
 from interp.port.requests import Request, Wait
 from interp.robot.simulation.robot import KinematicRobot
-from interp.tree import TreeExecutor
+from interp.tree.executor import TreeExecutor
 
 
 class Hasty(TreeExecutor):

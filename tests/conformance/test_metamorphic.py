@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from conformance.metamorphic import LAWS, Law, motion_changes, record_of, run_law, try_laws
+from conformance.metamorphic import motion_changes
 from conformance.metamorphic.comparison import (
     Compare,
     at_most_twice,
@@ -16,6 +16,8 @@ from conformance.metamorphic.comparison import (
     same_geometry,
     same_trace,
 )
+from conformance.metamorphic.law import Law, run_law
+from conformance.metamorphic.law_trials import LAWS, record_of, try_laws
 from conformance.metamorphic.motion_programs import moving_program
 from conformance.metamorphic.subject import Program, Run
 from conformance.metamorphic.tree_rewriting import integer, rewritten

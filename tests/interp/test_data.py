@@ -11,7 +11,7 @@ from interp.port.events import Recorder
 from interp.port.executor import Executor
 from interp.port.requests import EmptyError, End, Fail, Invoke, Read, Write
 from interp.program.load import Limits, load
-from interp.tree import system_values
+from interp.tree.memory import system_values
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.values import StructureValue, empty
 

@@ -10,7 +10,7 @@ from conformance.differential.random_world import QuietWorld
 from conformance.differential.undisturbed_run import Observed
 from grammar.semantics.types import Array
 from grammar.syntax.source import Source
-from interp.bytecode.compiler import compile_program
+from interp.bytecode.compiler.project import compile_program
 from interp.bytecode.program import Program
 from interp.port.events import ExecutorEvent
 from interp.port.executor import Executor

@@ -16,7 +16,7 @@ from typing import Any
 from conformance.differential.random_world import QuietWorld
 from conformance.differential.undisturbed_run import observe
 from grammar.syntax.source import Source
-from interp.bytecode.compiler import compile_program
+from interp.bytecode.compiler.project import compile_program
 from interp.bytecode.verifier.verify import Verified, verify
 from interp.bytecode.vm.executor import Machine
 from interp.native import AVAILABLE
@@ -24,7 +24,7 @@ from interp.port.events import Sink
 from interp.port.executor import Executor
 from interp.port.requests import Fail
 from interp.program.load import CheckedProgram, load
-from interp.tree import TreeExecutor
+from interp.tree.executor import TreeExecutor
 from interp.values.builtins import BUILTINS
 from interp.values.faults import Fault
 from interp.values.json_form import to_json

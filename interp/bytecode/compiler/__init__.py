@@ -6,8 +6,3 @@ its code form layers: `statements`; `control_flow` and `motions`; `calls` with `
 below it. Where code has to call upwards, the part is given a function: expressions call routines,
 designators contain expressions as indices, blocks contain statements.
 """
-
-from interp.bytecode.compiler.context import Refusal
-from interp.bytecode.compiler.project import Compiled, compile_program
-
-__all__ = ["Compiled", "Refusal", "compile_program"]

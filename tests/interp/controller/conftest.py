@@ -11,8 +11,11 @@ import numpy.typing as npt
 import pytest
 
 from grammar.syntax.source import Source
-from interp.controller import Controller, Profile, RunOutcome, Script, Trace, TraceEvent
-from interp.controller.scheduler import Scheduler
+from interp.controller.controller import Controller
+from interp.controller.inputs.input_script import Script
+from interp.controller.scheduler import RunOutcome, Scheduler
+from interp.controller.state.profile import Profile
+from interp.controller.state.trace import Trace, TraceEvent
 from interp.executors import Prepared
 from interp.port.events import EVERY_KIND
 from interp.program.load import Limits, load

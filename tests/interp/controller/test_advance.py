@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from interp.controller import Profile
+from interp.controller.state.profile import Profile
 
 Go = Callable[..., Any]
 

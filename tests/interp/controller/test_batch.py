@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from interp.controller import Profile
+from interp.controller.state.profile import Profile
 from interp.robot.api.batch import BatchCore
 
 Go = Callable[..., Any]

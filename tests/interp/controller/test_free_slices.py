@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from grammar.syntax.source import Source
 from interp.bytecode.vm.executor import Machine
-from interp.controller import Profile
 from interp.controller.inputs.input_script import Script
 from interp.controller.scheduler import Scheduler
+from interp.controller.state.profile import Profile
 from interp.executors import EXECUTORS, is_available
 from interp.program.load import CheckedProgram, Limits, load
 from interp.session import RunSetup, run_program

@@ -8,11 +8,12 @@ from hypothesis import strategies as st
 
 from grammar.syntax.source import Source
 from interp.bytecode.vm.executor import Machine
-from interp.controller import Profile, quiet_time
+from interp.controller import quiet_time
 from interp.controller.inputs.automatic_inputs import OPERATOR
 from interp.controller.inputs.input_script import Script
 from interp.controller.quiet_time import QuietTime
 from interp.controller.requests import waits
+from interp.controller.state.profile import Profile
 from interp.program.load import CheckedProgram, Limits, load
 from interp.session import RunResult, RunSetup, available, run_program
 

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.syntax.source import Source
-from interp.controller import Profile, Script, ScriptError
 from interp.controller.inputs.input_script import (
     Answer,
     Assign,
@@ -19,12 +18,15 @@ from interp.controller.inputs.input_script import (
     MessageShown,
     Press,
     ProgramHalted,
+    Script,
+    ScriptError,
     ScriptStep,
     Send,
     TextReceived,
     VariableChanged,
 )
 from interp.controller.requests import waits
+from interp.controller.state.profile import Profile
 from interp.program.load import Limits, load
 from interp.session import EXECUTORS, RunSetup, run_program
 

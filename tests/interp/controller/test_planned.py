@@ -7,7 +7,10 @@ from typing import Any
 import pytest
 
 from grammar.syntax.source import Source
-from interp.controller import Controller, Profile, Script, Trace
+from interp.controller.controller import Controller
+from interp.controller.inputs.input_script import Script
+from interp.controller.state.profile import Profile
+from interp.controller.state.trace import Trace
 from interp.port.events import EVERY_KIND
 from interp.program.load import load
 from interp.robot.api.control_core import ControlCore
@@ -16,7 +19,7 @@ from interp.robot.kinematics.placement import Placement
 from interp.robot.models import default_machine
 from interp.robot.planning.planned_arm import PlannedArm
 from interp.robot.simulation.robot import RobotFault
-from interp.tree import TreeExecutor
+from interp.tree.executor import TreeExecutor
 
 START = (0.0, -90.0, 90.0, 0.0, 45.0, 10.0)
 FRAMES = "$BASE=$NULLFRAME\n$TOOL=$NULLFRAME\n"

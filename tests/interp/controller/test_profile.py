@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from interp.controller import Profile, ProfileError, profile_names
+from interp.controller.state.profile import Profile, ProfileError, profile_names
 
 Go = Callable[..., Any]
 

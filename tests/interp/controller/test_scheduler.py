@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from interp.controller import Profile
+from interp.controller.state.profile import Profile
 from interp.program.load import Limits
 
 Go = Callable[..., Any]

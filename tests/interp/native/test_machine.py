@@ -17,7 +17,7 @@ from grammar.syntax.source import Source
 from interp import native
 from interp.bench.kernels import Kernel, kernels_in
 from interp.bytecode.assembly.assembler import assemble
-from interp.bytecode.compiler import compile_program
+from interp.bytecode.compiler.project import compile_program
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm import executor as vm
 from interp.bytecode.vm.state import computed

@@ -8,7 +8,7 @@ import pytest
 
 from conformance.differential.random_world import QuietWorld
 from grammar.syntax.source import Source
-from interp.controller import Trace
+from interp.controller.state.trace import Trace
 from interp.executors import Prepared, available
 from interp.port.events import EVERY_KIND, ExecutorEvent, Kind, Recorder
 from interp.port.executor import Executor

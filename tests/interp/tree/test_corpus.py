@@ -9,7 +9,8 @@ from conformance.differential.undisturbed_run import Observed, observe
 from grammar.syntax.source import Source
 from interp.port.requests import Crash, End, Fail
 from interp.program.load import Limits, load
-from interp.tree import TreeExecutor, system_values
+from interp.tree.executor import TreeExecutor
+from interp.tree.memory import system_values
 from support.files.decode import decode
 
 PROGRAMS = Path(__file__).parents[3] / "corpus" / "programs"

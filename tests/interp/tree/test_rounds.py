@@ -10,7 +10,7 @@ from grammar.syntax.source import Source
 from interp.port.events import Sink
 from interp.port.requests import End, Fail, Slice
 from interp.program.load import Limits, load
-from interp.tree import TreeExecutor
+from interp.tree.executor import TreeExecutor
 from interp.tree.run import Frame, ProgramState, Steps
 
 
