@@ -1,6 +1,6 @@
 """Shared by the commands about constructs: paths, errors, output."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -74,12 +74,3 @@ def print_refusals(refusals: Iterable[tuple[str, str]]) -> None:
     """Print the refusals: where and why."""
     for where, why in refusals:
         typer.echo(one_line(f"refused: {where}: {why}"))
-
-
-def print_table(heading: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """Print rows in columns as wide as their text, one line per row in pipes and logs."""
-    lines = [[one_line(cell) for cell in row] for row in ((heading, *rows) if heading else rows)]
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    for line in lines:
-        cells = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
-        typer.echo(f"  {'  '.join(cells)}".rstrip())

@@ -1,6 +1,7 @@
 """`krl compile`, `krl asm` and `krl disasm`: programs of the bytecode machine."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -8,24 +9,21 @@ import typer
 
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.running.program_loading import compile_project
+from krl.running.run_options import FileArgument
 from krl.terminal.output_files import check_files
 from support.files.atomic_write import write_atomic
 
 _LARGEST = 64 << 20  # bytes; no program that fits into the machine is nearly as large
 _MOST_LISTED = 20
+_ImageOption = Annotated[
+    Path | None,
+    typer.Option("-o", metavar="IMAGE", help="The image; FILE with the ending .krlb."),
+]
 
 
 def compile_file(
-    file: Annotated[
-        Path,
-        typer.Argument(
-            metavar="FILE", help="The program; archive.zip/path/name.src in an archive."
-        ),
-    ],
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", metavar="IMAGE", help="The image; FILE with the ending .krlb."),
-    ] = None,
+    file: FileArgument,
+    output: _ImageOption = None,
     strict: Annotated[
         bool, typer.Option("--strict", help="Write nothing if the checker finds an error.")
     ] = False,
@@ -42,10 +40,8 @@ def compile_file(
     """
     from interp.values.faults import LinkError
 
-    try:
+    with _about(file, LinkError):
         image, left = compile_project(file, strict=strict)
-    except LinkError as error:
-        raise InputError(f"{file}: {error}") from error
     target = output or file.with_suffix(".krlb")
     _write(image.data, target)
     notes = [f"left out: {why}" for why in left]
@@ -82,25 +78,18 @@ def _native_code(image: bytes) -> Iterator[str]:
 
 def assemble_file(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A program as text.")],
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", metavar="IMAGE", help="The image; FILE with the ending .krlb."),
-    ] = None,
+    output: _ImageOption = None,
 ) -> None:
     """Assemble a program of the bytecode machine, verify it, and write its image."""
     from interp.bytecode.assembly.assembler import AssemblyError, assemble
     from interp.bytecode.verifier.verify import VerificationError, verify
 
     try:
-        program = assemble(_read(file).decode("utf-8-sig"))
+        text = _read(file).decode("utf-8-sig")
     except UnicodeDecodeError:
         raise InputError(f"{file}: not a text in UTF-8") from None
-    except AssemblyError as error:
-        raise InputError(f"{file}: {error}") from error
-    try:
-        image = verify(program).image
-    except VerificationError as error:
-        raise InputError(f"{file}: {error}") from error
+    with _about(file, AssemblyError, VerificationError):
+        image = verify(assemble(text)).image
     _write(image, output or file.with_suffix(".krlb"))
 
 
@@ -116,10 +105,8 @@ def disassemble_image(
     from interp.bytecode.verifier.verify import VerificationError, verify
     from interp.native import AVAILABLE
 
-    try:
+    with _about(image, ImageError, VerificationError):
         verified = verify(read_image(_read(image)))
-    except (ImageError, VerificationError) as error:
-        raise InputError(f"{image}: {error}") from error
     if not steps:
         typer.echo(disassemble(verified.program), nl=False)
         return
@@ -129,6 +116,15 @@ def disassemble_image(
 
     for line in listing(verified):
         typer.echo(line)
+
+
+@contextmanager
+def _about(file: Path, *kinds: type[Exception]) -> Iterator[None]:
+    """Raise exceptions of these kinds as `InputError` that names the file."""
+    try:
+        yield
+    except kinds as error:
+        raise InputError(f"{file}: {error}") from error
 
 
 def _write(image: bytes, target: Path) -> None:

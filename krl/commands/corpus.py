@@ -2,13 +2,14 @@
 
 import re
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line, shown
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
+from krl.terminal.text_table import print_columns
 from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
@@ -31,7 +32,8 @@ def show() -> int:
     sources = _sources()
     typer.echo(f"Own programs in {CORPUS / 'programs'}")
     cells = list(_own_cells(CORPUS / "programs"))
-    _print_table([(name, counted(files, "file"), _kilobytes(size)) for name, files, size in cells])
+    rows = [(name, counted(files, "file"), _kilobytes(size)) for name, files, size in cells]
+    print_columns(*rows or [("none",)])
     typer.echo("\nPublic repositories, which belong to their authors")
     rows = []
     for source in sources:
@@ -39,7 +41,7 @@ def show() -> int:
         here = f"{len(source.files) - missing} here" if missing else "all here"
         count = counted(len(source.files), "file")
         rows.append((*_heading(source), source.generation, count, _kilobytes(source.size), here))
-    _print_table(rows)
+    print_columns(*rows or [("none",)])
     return FINE
 
 
@@ -82,7 +84,7 @@ def fetch(
     for result in results:
         share = f"{result.written + result.kept} of {counted(len(result.source.files), 'file')}"
         rows.append((*_heading(result.source), share))
-    _print_table(rows)
+    print_columns(*rows or [("none",)])
     problems = [problem for result in results for problem in result.problems]
     for problem in problems:
         typer.echo(one_line(f"missing: {problem}"), err=True)
@@ -169,13 +171,3 @@ def _heading(source: "PublicSource") -> tuple[str, str]:
 
 def _kilobytes(size: int) -> str:
     return f"{size / 1000:,.0f} kB"
-
-
-def _print_table(rows: Sequence[tuple[str, ...]]) -> None:
-    """Print in columns as wide as their text, so that pipes and logs get each row on one line."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-        typer.echo(shown(f"  {'  '.join(cells)}".rstrip()))
-    if not rows:
-        typer.echo("  none")

@@ -1,6 +1,7 @@
 """`krl recover`: what a grammar cannot parse in a corpus."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
@@ -165,26 +166,23 @@ def recover(
     return FINDINGS if strict and record["parsed"] < record["files"] else FINE
 
 
+@dataclass(frozen=True, slots=True)
 class _Surveyor:
     """Surveys of the same files under two grammars, with progress bars.
 
     The page is written after the survey, before the causes are searched.
     """
 
-    def __init__(
-        self,
-        roots: Sequence[Path],
-        negatives: "Sequence[Negative]",
-        out: Path,
-        jobs: int | None,
-        scheduler: str | None,
-    ) -> None:
-        self.roots = roots
-        self.negatives = negatives
-        self.out = out
-        self.cache = out / "cache"
-        self.jobs = jobs
-        self.scheduler = scheduler
+    roots: Sequence[Path]
+    negatives: "Sequence[Negative]"
+    out: Path
+    jobs: int | None
+    scheduler: str | None
+
+    @property
+    def cache(self) -> Path:
+        """The folder of results of this run and earlier ones."""
+        return self.out / "cache"
 
     def record(self, grammar: "Grammar", name: str) -> "SurveyRecord":
         """Return the record of the survey under a grammar."""

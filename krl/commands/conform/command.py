@@ -4,6 +4,7 @@ import signal
 import time
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
@@ -105,7 +106,7 @@ def conform(
     runs programs that combine features of motions, interrupts, triggers and outputs in pairs; the
     executors must agree and no law may be broken.
     """
-    words = select or []
+    words, outputs = select or [], _Outputs(json_file, junit, html)
     check_files(json_file, junit)
     if junit is not None:
         need("junitparser")
@@ -115,7 +116,7 @@ def conform(
         if lint:
             return _lint(words)
         if words[:1] == ["compare"]:
-            return _compare(words[1:], parser or [], json_file, junit, html)
+            return _compare(words[1:], parser or [], outputs)
         if parser:
             raise InputError("--parser belongs to krl conform compare")
         if metamorphic is not None:
@@ -123,13 +124,8 @@ def conform(
 
             return check_laws(_cases(words), metamorphic, json_file, jobs, scheduler)
         if fault is None or list_ or words[:1] in (["import"], ["export"]):
-            return _conform(
-                words,
-                *(executor, robot, json_file, junit, html, jobs, scheduler),
-                list_=list_,
-                strict=strict,
-                seed=seed,
-            )
+            given = (words, executor, robot, outputs, jobs, scheduler)
+            return _conform(*given, list_=list_, strict=strict, seed=seed)
         from krl.commands.conform.planted_fault import planted
 
         if scheduler is not None or jobs not in (None, 1):
@@ -138,12 +134,44 @@ def conform(
             )
         with planted(fault) as name:
             typer.echo(one_line(f"planted: {name}"))
-            return _conform(
-                *(words, executor, robot, json_file, junit, html, 1, None),
-                list_=False,
-                strict=strict,
-                fault=name,
-            )
+            return _conform(words, executor, robot, outputs, 1, None, strict=strict, fault=name)
+
+
+@dataclass(frozen=True, slots=True)
+class _Outputs:
+    """The files that are asked for."""
+
+    json_file: Path | None
+    junit: Path | None
+    html: Path | None
+
+    def write(
+        self,
+        results: "Sequence[CaseResult]",
+        executors: Sequence[str],
+        robots: Sequence[str],
+        seconds: float,
+        more: Mapping[str, object],
+    ) -> None:
+        """Write them; ``more`` are further fields of the record, if not empty.
+
+        The record is written last, because it says that the run is complete.
+        """
+        from conformance.record import record_of
+
+        version = metadata.version("krl-workbench")
+        if self.json_file is not None or self.html is not None:
+            record = record_of(results, executors, robots, version=version, seconds=seconds)
+            record |= {name: value for name, value in more.items() if value}
+            if self.html is not None:
+                from reports.conformance.conform_page import write_conformance_page
+
+                typer.echo(one_line(f"page: {write_conformance_page(record, self.html)}"))
+            write_json(record, self.json_file)
+        if self.junit is not None:
+            from conformance.junit import write_junit
+
+            write_junit(results, self.junit)
 
 
 @contextmanager
@@ -159,25 +187,28 @@ def _conform(
     words: list[str],
     executor: list[str] | None,
     robot: list[str] | None,
-    json_file: Path | None,
-    junit: Path | None,
-    html: Path | None,
+    outputs: _Outputs,
     jobs: int | None,
     scheduler: str | None,
     *,
-    list_: bool,
     strict: bool,
+    list_: bool = False,
     seed: int = 1,
     fault: str = "",
 ) -> int:
     bad = ("fail", "unconfirmed") if strict else ("fail",)
     if words[:1] == ["import"]:
-        return _import(words[1:], json_file, junit, html, bad)
+        return _import(words[1:], outputs, bad)
     if words[:1] == ["export"]:
         return _export(words[1:], jobs, scheduler)
-    cases = _drawn(seed) if words == ["pairs"] else _cases(words)
+    if words == ["pairs"]:
+        from conformance.suite.interactions import drawn
+
+        cases = drawn(seed)
+    else:
+        cases = _cases(words)
     if list_:
-        return _list(cases, json_file)
+        return _list(cases, outputs.json_file)
     need(*ARM)
     executors = _chosen(executor, "executor")
     robots = _chosen(robot, "robot")
@@ -186,7 +217,7 @@ def _conform(
     seconds = time.perf_counter() - begun
     left = [case.name for case in cases[len(results) :]]
     more = {"selection": words, "fault": fault, "not_run": left, "running": running}
-    _write(results, executors, robots, seconds, json_file, junit, html, more)
+    outputs.write(results, executors, robots, seconds, more)
     _print_summary(results, seconds, bad)
     if left:
         while_ = f" while running {', '.join(running)}" if running else ""
@@ -219,27 +250,15 @@ def _list(cases: "Sequence[Case]", json_file: Path | None) -> int:
 
 
 def _cases(words: Sequence[str]) -> "list[Case]":
-    from conformance.suite.case import CASES, CaseError, find_cases, selected
+    from conformance.suite.case import CASES, CaseError, find_cases, read_case, selected
 
     outside = [Path(word) for word in words if Path(word).exists()]
     with as_input_errors(CaseError):
         cases = find_cases()
         for path in outside:
             if CASES.resolve() not in (path.resolve(), *path.resolve().parents):
-                cases += find_cases(path) if path.is_dir() else _one_case(path)
+                cases += find_cases(path) if path.is_dir() else [read_case(path, path.parent)]
         return selected(cases, words)
-
-
-def _drawn(seed: int) -> "list[Case]":
-    from conformance.suite.interactions import drawn
-
-    return drawn(seed)
-
-
-def _one_case(path: Path) -> "list[Case]":
-    from conformance.suite.case import read_case
-
-    return [read_case(path, path.parent)]
 
 
 def _chosen(wanted: list[str] | None, what: str) -> list[str]:
@@ -281,37 +300,6 @@ def _run(
     with progress_bar("running cases", len(cases)) as bar, on_termination(stop):
         given = (known, jobs, bar, scheduler, running.extend)
         return run_cases(cases, executors, robots, *given), running
-
-
-def _write(
-    results: "Sequence[CaseResult]",
-    executors: Sequence[str],
-    robots: Sequence[str],
-    seconds: float,
-    json_file: Path | None,
-    junit: Path | None,
-    html: Path | None,
-    more: Mapping[str, object],
-) -> None:
-    """Write the files that are asked for; ``more`` are further fields of the record, if not empty.
-
-    The record is written last, because it says that the run is complete.
-    """
-    from conformance.record import record_of
-
-    version = metadata.version("krl-workbench")
-    if json_file is not None or html is not None:
-        record = record_of(results, executors, robots, version=version, seconds=seconds)
-        record |= {name: value for name, value in more.items() if value}
-        if html is not None:
-            from reports.conformance.conform_page import write_conformance_page
-
-            typer.echo(one_line(f"page: {write_conformance_page(record, html)}"))
-        write_json(record, json_file)
-    if junit is not None:
-        from conformance.junit import write_junit
-
-        write_junit(results, junit)
 
 
 def _print_summary(
@@ -391,13 +379,7 @@ def _export(words: Sequence[str], jobs: int | None, scheduler: str | None) -> in
     return FINDINGS if any(one.verdict == "fail" for one in results) else FINE
 
 
-def _compare(
-    words: Sequence[str],
-    wanted: Sequence[str],
-    json_file: Path | None,
-    junit: Path | None,
-    html: Path | None,
-) -> int:
+def _compare(words: Sequence[str], wanted: Sequence[str], outputs: _Outputs) -> int:
     """Print for each suite how many cases each parser accepts or rejects correctly."""
     from conformance.parser_comparison import OWN, ParserError, compared, parsers
 
@@ -410,8 +392,7 @@ def _compare(
             results = compared(cases, found, bar)
         names = list(found)
     seconds = time.perf_counter() - begun
-    more = {"selection": list(words)}
-    _write(results, names, ["none"], seconds, json_file, junit, html, more)
+    outputs.write(results, names, ["none"], seconds, {"selection": list(words)})
     _print_comparison(results, names)
     own = any(one.executor == OWN and one.verdict == "fail" for r in results for one in r.results)
     return FINDINGS if own else FINE
@@ -431,13 +412,7 @@ def _print_comparison(results: "Sequence[CaseResult]", names: Sequence[str]) -> 
     Console(highlight=False).print(table)
 
 
-def _import(
-    words: Sequence[str],
-    json_file: Path | None,
-    junit: Path | None,
-    html: Path | None,
-    bad: Collection[str],
-) -> int:
+def _import(words: Sequence[str], outputs: _Outputs, bad: Collection[str]) -> int:
     """Evaluate a recording: its failures, and its evidence on unconfirmed rules."""
     from conformance.recording import Recording, RecordingError, answers, evaluate_recording
     from conformance.suite.case import CaseError, find_cases
@@ -458,7 +433,7 @@ def _import(
     there = {one.case.name for one in results}
     left = [case.name for case in cases if case.phase == "run" and case.name not in there]
     more = {"recording": recording.controller, "not_recorded": left}
-    _write(results, [recording.controller], robots, seconds, json_file, junit, html, more)
+    outputs.write(results, [recording.controller], robots, seconds, more)
     typer.echo(one_line(f"recorded on {recording.controller}"))
     for answer in answers(results):
         rest = f"against it: {', '.join(answer.against)}" if answer.against else "none against it"

@@ -106,7 +106,9 @@ def accept(
     for evaluation in found.evaluations:
         print_evaluation(evaluation)
     accepted = sum(c.is_accepted for c in found.constructs)
-    typer.echo(f"wrote {counted(len(written), 'file')}; the grammar has {_count(accepted)}")
+    typer.echo(
+        f"wrote {counted(len(written), 'file')}; the grammar has {counted(accepted, 'construct')}"
+    )
     return FINE
 
 
@@ -137,7 +139,8 @@ def replay(
             for line in found:
                 typer.echo(one_line(line))
             if not found:
-                typer.echo(f"{GRAMMAR.as_posix()} is the replay of {_count(len(ledger.accepted))}")
+                constructs = counted(len(ledger.accepted), "construct")
+                typer.echo(f"{GRAMMAR.as_posix()} is the replay of {constructs}")
             return FINDINGS if found else FINE
         chosen = [c for c in ledger.accepted if until is None or (c.number or 0) <= until]
         steps = replayed(preliminary, chosen)
@@ -146,7 +149,9 @@ def replay(
         typer.echo(text, nl=False)
     else:
         write_atomic(out, text)
-        typer.echo(one_line(f"wrote {out.as_posix()}: the replay of {_count(len(chosen))}"))
+        typer.echo(
+            one_line(f"wrote {out.as_posix()}: the replay of {counted(len(chosen), 'construct')}")
+        )
     return FINE
 
 
@@ -186,7 +191,3 @@ def _corpora(paths: list[Path] | None, jobs: int | None) -> "Corpora":
         cache=_CACHE,
         jobs=jobs,
     )
-
-
-def _count(number: int) -> str:
-    return f"{number} construct" if number == 1 else f"{number} constructs"

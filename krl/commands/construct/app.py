@@ -7,15 +7,10 @@ import typer
 
 from krl.commands.construct.accept import accept, evaluate, replay
 from krl.commands.construct.oracle import oracle
-from krl.construct_ledger import (
-    LEDGER,
-    PRELIMINARY,
-    checkout_or_packaged,
-    expected_errors,
-    print_table,
-)
+from krl.construct_ledger import LEDGER, PRELIMINARY, checkout_or_packaged, expected_errors
 from krl.errors import FINE, InputError, one_line
 from krl.terminal.output_files import check_files, write_json
+from krl.terminal.text_table import print_columns
 
 _SURVEY = Path("reports", "out", "recover", "survey.json")
 
@@ -51,12 +46,12 @@ def show_all(
         )
         for c in ledger.constructs
     ]
-    print_table(("", "title", "state", "grounds", "files / origins"), rows)
+    print_columns(("", "title", "state", "grounds", "files / origins"), *rows)
     waiting = [(c, reason_to_ask(c)) for c in ledger.constructs]
     asked = [(c.id, why) for c, why in waiting if why]
     if asked:
         typer.echo("\nWaiting for a verdict (krl construct oracle)")
-        print_table((), asked)
+        print_columns(*asked)
     write_json({"constructs": [row_of(c) for c in ledger.constructs]}, json_file)
     return FINE
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.construct_ledger import LEDGER, checkout_or_packaged, expected_errors, print_table
+from krl.construct_ledger import LEDGER, checkout_or_packaged, expected_errors
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
 from krl.terminal.progress import progress_bar
+from krl.terminal.text_table import print_columns
 
 if TYPE_CHECKING:
     from recovery.ledger.construct import Construct
@@ -82,8 +83,8 @@ def oracle(
                 return FINE
     if not chosen:
         typer.echo("nothing waits for a verdict")
-    print_table(
-        (), [(c.id, reason_to_ask(c) or c.evidence.verdict or "need not wait") for c in chosen]
+    print_columns(
+        *((c.id, reason_to_ask(c) or c.evidence.verdict or "need not wait") for c in chosen)
     )
     return FINE
 
