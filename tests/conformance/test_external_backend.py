@@ -5,10 +5,17 @@ from typing import Any
 
 import pytest
 
+from conformance import external_backend
 from conformance.external_backend import NotConforming, prove
+from conformance.suite.case import Case
 from interp.port.requests import Request, Wait
 from interp.robot.simulation.robot import KinematicRobot
 from interp.tree.executor import TreeExecutor
+
+
+@pytest.fixture(autouse=True)
+def _cases_are_read_once(own_cases: list[Case], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(external_backend, "find_cases", lambda _folder: own_cases)
 
 
 class Hasty(TreeExecutor):

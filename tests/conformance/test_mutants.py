@@ -373,9 +373,10 @@ def test_a_mutant_whose_lines_no_case_runs_survives() -> None:
 
 def test_known_equivalent_changes_exist() -> None:
     """Each entry is a change that can be drawn from its line, or a line from which one can."""
+    lines = {module: text_of(module).splitlines() for module, *_ in equivalent()}
     there = {
-        (module, one.function, text_of(module).splitlines()[one.line - 1].strip(), one.was, one.now)
-        for module in {one[0] for one in equivalent()}
+        (module, one.function, lines[module][one.line - 1].strip(), one.was, one.now)
+        for module in lines
         for one in changes(ast.parse(text_of(module)))
     }
     assert set() == set(equivalent()) - there - {one[:3] for one in there}

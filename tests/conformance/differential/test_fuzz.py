@@ -221,8 +221,12 @@ def test_time_that_is_up_ends_a_campaign(monkeypatch: pytest.MonkeyPatch) -> Non
     assert expected == record_of(fuzz(100, 5, ["tree"], minutes=1.0), 0.0)
 
 
-def test_command_without_difference(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Exit status 0, and a record with what was covered."""
+def test_command_without_difference(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Exit status 0, and a record with what was covered, rules by their cases."""
+    known = [case.read_case(case.CASES / "control/if_else.src")]
+    monkeypatch.setattr(case, "find_cases", lambda: known)
     target = tmp_path / "fuzz.json"
     arguments = ["fuzz", "--programs", "2", "--seed", "5", "--jobs", "1", "--json", str(target)]
     assert 0 == main(arguments)
@@ -230,6 +234,7 @@ def test_command_without_difference(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert (2, 5, list(available())) == (record["programs"], record["seed"], record["executors"])
     assert record["coverage"]["node"]["Assignment"] > 5
     assert [] == record["differences"]
+    assert [known[0].basis] == [*record["rules"]]
     assert "No difference." in capsys.readouterr().out
 
 
