@@ -41,7 +41,7 @@ settings.register_profile(
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "suite"))
 
 # What tests work on is small: garbage may wait, of short work and of long.
-gc.set_threshold(20_000, 20, 50)
+gc.set_threshold(100_000, 8, 20)
 gc_pause._MANY *= 4
 
 # Nor does what a command says depend on how long it takes.

@@ -93,18 +93,17 @@ def same(left: Any, right: Any) -> None:
     assert left.outcome == right.outcome
 
 
-@pytest.mark.parametrize("executor", OTHERS)
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_same_trace(go: Go, name: str, executor: str) -> None:
+def test_same_trace(go: Go, name: str) -> None:
     """The machines tell what the tree interpreter tells, to the bit."""
     text, script = PROGRAMS[name]
     tree = go(text, script)
     assert "crash" != tree.outcome.ending
-    same(tree, go(text, script, executor=executor))
+    for executor in OTHERS:
+        same(tree, go(text, script, executor=executor))
 
 
-@pytest.mark.parametrize("executor", OTHERS)
-def test_same_trace_with_submit(go: Go, executor: str) -> None:
+def test_same_trace_with_submit(go: Go) -> None:
     """Two programs over the same data take turns in the same way."""
     text = (
         f"DEF main()\nINT I\n{HOME}$OUT[1]=TRUE\nWAIT SEC 0.5\nI=COUNT\nCOUNT=0\nWAIT SEC 1\n"
@@ -113,4 +112,5 @@ def test_same_trace_with_submit(go: Go, executor: str) -> None:
     script = "\n".join(f"t={one / 10} IN[1]={'TRUE' if one % 2 else 'FALSE'}" for one in range(30))
     tree = go(text, script, files=SUBMIT, submit="SPS")
     assert ("end", 5) == (tree.outcome.ending, tree.last("I"))
-    same(tree, go(text, script, files=SUBMIT, submit="SPS", executor=executor))
+    for executor in OTHERS:
+        same(tree, go(text, script, files=SUBMIT, submit="SPS", executor=executor))
