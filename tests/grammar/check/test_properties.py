@@ -1,15 +1,13 @@
-"""What holds for every program: names and folds change no verdict, findings lie in their text."""
+"""What holds for every program: names and folds change no verdict."""
 
 import re
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.check.project.framework import check
-from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, link
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
@@ -77,54 +75,3 @@ def test_folds_change_no_verdict(path: Path, width: int, ending: str) -> None:
         for line, code, grave in checked(text, f"NEG{path.suffix}")
     ]
     assert moved == checked(other, f"NEG{path.suffix}")
-
-
-def programs() -> list[Path]:
-    found = (
-        path
-        for path in (CORPUS / "programs").rglob("*")
-        if path.suffix.lower() in {".src", ".dat", ".sub"}
-    )
-    return sorted(found)
-
-
-@pytest.fixture(scope="module")
-def corpus() -> tuple[dict[str, Source], list[Diagnostic]]:
-    """Our own programs and what is found in them."""
-    sources = {}
-    files = []
-    for path in programs():
-        shown = path.relative_to(CORPUS).as_posix()
-        data = path.read_bytes()
-        text = data.decode("utf-8-sig" if data.startswith(b"\xef") else "cp1252")
-        module = read_module(text, shown)
-        assert not isinstance(module, list), module
-        sources[shown] = Source(text, shown)
-        files.append(File(shown, module, "/".join(shown.split("/")[:2])))
-    return sources, check(link(files), lambda module: sources[module.path])
-
-
-#: The example of the paper has an interrupt of number 3, which INT-02 gives to the system.
-#: The others show how the language is written, and do nothing.
-DOCUMENTED = {
-    ("programs/dialects/paper_example.src", "KRL503"),
-    ("programs/dialects/signs.src", "KRL409"),
-    ("programs/dialects/soft_names.src", "KRL412"),
-}
-
-
-def test_our_programs_are_fine(corpus: tuple[dict[str, Source], list[Diagnostic]]) -> None:
-    """The programs of the corpus have neither errors nor warnings, but for documented ones."""
-    _, found = corpus
-    grave = {(one.path, one.code) for one in found if one.severity != "note"}
-    assert grave == DOCUMENTED
-
-
-def test_findings_lie_in_their_text(corpus: tuple[dict[str, Source], list[Diagnostic]]) -> None:
-    """Every region is a part of a line of its file."""
-    sources, found = corpus
-    assert found
-    for one in found:
-        line = sources[one.path].line(one.region.line)
-        assert one.region.line == one.region.end_line
-        assert 1 <= one.region.column <= one.region.end_column <= len(line) + 1

@@ -8,6 +8,7 @@ from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.rule_matcher import RuleMatcher
 from recovery.forms.symbols import Token
+from recovery.proposals import segmentation
 from recovery.proposals.segmentation import Segmenter
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))
@@ -44,10 +45,12 @@ def test_what_is_no_token_has_no_parts() -> None:
     assert CUTTER.parts(words_of("A § B")) is None
 
 
-def test_enormous_lines_are_not_cut() -> None:
+def test_enormous_lines_are_not_cut(monkeypatch: pytest.MonkeyPatch) -> None:
     """A line longer than any statement has no parts: to find them would take hours."""
-    assert [1] * 119 == [len(part) for part in CUTTER.parts(words_of("(" * 119)) or []]
     assert CUTTER.parts(words_of("(" * 3_000)) is None
+    monkeypatch.setattr(segmentation, "LONGEST_SEGMENTED", 40)
+    assert [1] * 40 == [len(part) for part in CUTTER.parts(words_of("(" * 40)) or []]
+    assert CUTTER.parts(words_of("(" * 41)) is None
 
 
 def test_a_word_right_behind_a_value_begins_no_operand() -> None:
