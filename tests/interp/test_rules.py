@@ -33,15 +33,16 @@ from interp.values.operators import BINARY, UNARY
 _TABLE = Path(__file__).parent / "data" / "rules.tsv"
 _ROWS = [line.split("\t") for line in _TABLE.read_text(encoding="utf-8").splitlines()[1:]]
 _ROUTINES = 64
-_PROGRAM = """DEF CASE_{number}()
-DECL {type} R
-DECL INT I,J,BIG,OFS,N[2,3]
-DECL REAL X,Y
-DECL BOOL T,F
-DECL CHAR C,S[8],U[8]
-DECL CIRC_TYPE M
-DECL FRAME P,Q
-DECL POS O
+#: Numbers and truths are variables of each routine, larger ones of their data list.
+_DATA = """DEFDAT main
+DECL INT N[2,3]
+DECL CHAR S[8],U[8]
+S[]="abc"
+U[]="de"
+DECL CIRC_TYPE M=#BASE
+DECL FRAME P={X 1,Y 2,Z 3,A 90,B 0,C 0}
+DECL FRAME Q={X 10,Y 0,Z 0,A 0,B 0,C 0}
+DECL POS O={X 10,Y 0,Z 0,A 0,B 0,C 0,S 2,T 35}
 DECL E3POS G
 DECL E6POS E,V
 DECL AXIS A
@@ -49,6 +50,14 @@ DECL E3AXIS D
 DECL E6AXIS B
 DECL LOAD L
 DECL STATE_T ST
+ENDDAT
+"""
+_ROUTINE = """DEF CASE_{number}()
+DECL {type} R
+DECL INT I,J,BIG,OFS
+DECL REAL X,Y
+DECL BOOL T,F
+DECL CHAR C
 I=7
 J=-2
 BIG=2147483647
@@ -57,12 +66,6 @@ Y=0.1
 T=TRUE
 F=FALSE
 C="A"
-S[]="abc"
-U[]="de"
-M=#BASE
-P={{X 1,Y 2,Z 3,A 90,B 0,C 0}}
-Q={{X 10,Y 0,Z 0,A 0,B 0,C 0}}
-O={{X 10,Y 0,Z 0,A 0,B 0,C 0,S 2,T 35}}
 {before}
 R={expression}
 END
@@ -72,14 +75,17 @@ END
 def _programs() -> list[tuple[CheckedProgram, Verified]]:
     """One routine for each row of the table, in programs of `_ROUTINES`, which load faster."""
     texts = [
-        _PROGRAM.format(
+        _ROUTINE.format(
             number=number, type=row[1], expression=row[2], before=row[4].replace(" ~ ", "\n")
         )
         for number, row in enumerate(_ROWS)
     ]
     checked = [
         load(
-            [Source("".join(texts[first : first + _ROUTINES]), "main.src")],
+            [
+                Source("".join(texts[first : first + _ROUTINES]), "main.src"),
+                Source(_DATA, "main.dat"),
+            ],
             "main.src",
             strict=False,
         )
