@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from conformance.suite import case
+from krl.running import project_folders
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -21,6 +22,14 @@ def _own_cases_are_read_once() -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(case, "find_cases", find_cases)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _few_files_are_looked_at_around_one() -> Iterator[None]:
+    """The folders of thousands of tests lie beside one another: some hundreds are looked at."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(project_folders, "_MOST", 300)
         yield
 
 
