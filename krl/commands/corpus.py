@@ -2,7 +2,7 @@
 
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -32,8 +32,8 @@ def show() -> int:
     sources = _sources()
     typer.echo(f"Own programs in {CORPUS / 'programs'}")
     cells = list(_own_cells(CORPUS / "programs"))
-    rows = [(name, counted(files, "file"), _kilobytes(size)) for name, files, size in cells]
-    print_columns(*rows or [("none",)])
+    own = ((name, counted(files, "file"), _kilobytes(size)) for name, files, size in cells)
+    _print_rows(own)
     typer.echo("\nPublic repositories, which belong to their authors")
     rows = []
     for source in sources:
@@ -41,7 +41,7 @@ def show() -> int:
         here = f"{len(source.files) - missing} here" if missing else "all here"
         count = counted(len(source.files), "file")
         rows.append((*_heading(source), source.generation, count, _kilobytes(source.size), here))
-    print_columns(*rows or [("none",)])
+    _print_rows(rows)
     return FINE
 
 
@@ -84,7 +84,7 @@ def fetch(
     for result in results:
         share = f"{result.written + result.kept} of {counted(len(result.source.files), 'file')}"
         rows.append((*_heading(result.source), share))
-    print_columns(*rows or [("none",)])
+    _print_rows(rows)
     problems = [problem for result in results for problem in result.problems]
     for problem in problems:
         typer.echo(one_line(f"missing: {problem}"), err=True)
@@ -171,3 +171,7 @@ def _heading(source: "PublicSource") -> tuple[str, str]:
 
 def _kilobytes(size: int) -> str:
     return f"{size / 1000:,.0f} kB"
+
+
+def _print_rows(rows: Iterable[Sequence[str]]) -> None:
+    print_columns(*([*rows] or [("none",)]))
