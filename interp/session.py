@@ -18,7 +18,7 @@ from interp.controller.inputs.input_script import Script
 from interp.controller.scheduler import HOUR, RunOutcome
 from interp.controller.state.profile import Profile
 from interp.controller.state.trace import WORLD_KINDS, TaskSink, Trace, TraceEvent
-from interp.executors import EXECUTORS, Prepared, available
+from interp.executors import Prepared
 from interp.machine_choice import (
     ChosenMachine,
     machine_or_stand_in,
@@ -49,14 +49,6 @@ if TYPE_CHECKING:
     from interp.robot.simulation.robot_files import RobotFile
     from interp.robot.simulation.tracking import PathRecord, Tracking
 
-__all__ = [
-    "EXECUTORS",
-    "RunResult",
-    "RunSetup",
-    "available",
-    "run_program",
-    "submit_of",
-]
 
 #: Where the arm stands at first, in degrees, where the project says nothing of it: upright, its
 #: forearm level. Where something stands in its hand is bent, so that a line may lead away from

@@ -189,7 +189,8 @@ def run(
     from interp.controller.inputs.automatic_inputs import OPERATOR
     from interp.controller.inputs.input_script import Script
     from interp.controller.state.profile import Profile
-    from interp.session import RunSetup, available, run_program
+    from interp.executors import available
+    from interp.session import RunSetup, run_program
     from interp.values.faults import RuntimeFailure
     from krl.running.program_loading import load_program
     from krl.running.run_notes import run_notes

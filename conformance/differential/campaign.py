@@ -23,9 +23,10 @@ from conformance.differential.construct_coverage import (
 )
 from conformance.differential.divergence import Difference, Files, diverged, prepared
 from conformance.differential.reduction import reduce_program
-from conformance.differential.runs import EXECUTORS, Prepared, is_available, trace_of
+from conformance.differential.runs import EXECUTORS, trace_of
 from grammar.generation.programs import seeded
 from grammar.syntax.build import builder
+from interp.executors import Prepared, is_available
 from interp.values.faults import LinkError
 from support.parallel.ordered_map import ordered_map
 from support.parallel.workers import WorkersError

@@ -14,7 +14,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any, Final, get_args
 
-from conformance.differential.runs import Prepared
 from conformance.differential.traces import Fact, place_of
 from conformance.suite.case import Case
 from grammar.motion_kinds import MOTIONS
@@ -23,6 +22,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
+from interp.executors import Prepared
 from interp.values.builtins import BUILTINS
 from interp.values.faults import FAULTS, LinkError
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from conformance.differential.runs import EXECUTORS, Prepared, trace_of, untraced
+from conformance.differential.runs import EXECUTORS, trace_of, untraced
 from conformance.differential.traces import Fact, shown
 from grammar.syntax.source import Source
+from interp.executors import Prepared
 from interp.port.events import EVERY_KIND
 from interp.program.load import load
 

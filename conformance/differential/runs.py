@@ -15,7 +15,7 @@ from typing import Any, Final
 from conformance.differential.random_world import RandomWorld
 from conformance.differential.traces import Fact, Trace
 from interp import executors
-from interp.executors import COMPILED, Prepared, available, is_available
+from interp.executors import COMPILED, Prepared
 from interp.port.events import Sink
 from interp.port.executor import Executor
 from interp.port.requests import (
@@ -36,8 +36,6 @@ from interp.port.requests import (
 )
 from interp.program.load import Limits
 from interp.values.faults import LinkError, RuntimeFailure
-
-__all__ = ["Prepared", "available", "is_available"]
 
 #: More statements than any generated program executes, and slices short enough to occur.
 LIMITS: Final = Limits(statements=20_000, per_slice=25)

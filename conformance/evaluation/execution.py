@@ -29,7 +29,7 @@ from interp import session
 from interp.controller.inputs.input_script import Script, ScriptError
 from interp.controller.state.profile import Profile
 from interp.controller.state.trace import TraceEvent
-from interp.executors import COMPILED, EXECUTORS, Prepared, is_available
+from interp.executors import Prepared, is_available
 from interp.port.events import Sink
 from interp.port.executor import Executor
 from interp.program.load import CheckedProgram, Limits, load
@@ -38,20 +38,6 @@ from interp.robot.models import default_machine
 from interp.robot.simulation.factory import ROBOTS, RobotName
 from interp.robot.simulation.robot import Robot
 from interp.values.faults import LinkError
-
-__all__ = [
-    "COMPILED",
-    "EXECUTORS",
-    "FRONT",
-    "PROFILES",
-    "ROBOTS",
-    "Setup",
-    "missing",
-    "observe",
-    "observe_with",
-    "observed",
-    "prepared",
-]
 
 #: The name of the front end that parses and checks cases; there is only one.
 FRONT: Final = "grammar"

@@ -14,11 +14,12 @@ from typing import Any, Final, NoReturn
 
 from conformance.differential.campaign import world_seed
 from conformance.differential.divergence import prepared
-from conformance.differential.runs import EXECUTORS, Prepared, trace_of
+from conformance.differential.runs import EXECUTORS, trace_of
 from conformance.differential.traces import Fact
 from conformance.sensitivity.code_exchange import InvalidMutant, load
 from conformance.sensitivity.mutants import Mutant, drawn
 from grammar.generation.programs import seeded
+from interp.executors import Prepared
 from support.parallel.ordered_map import ordered_map
 
 #: What mutants are drawn from, in `conformance.sensitivity.mutated_code.PACKAGES`.

@@ -69,7 +69,8 @@ def fuzz(
 
 def _chosen(wanted: list[str]) -> list[str]:
     """Return executors by name, each once; all available ones by default."""
-    from conformance.differential.runs import EXECUTORS, available, is_available
+    from conformance.differential.runs import EXECUTORS
+    from interp.executors import available, is_available
 
     there = available()
     for name in wanted:

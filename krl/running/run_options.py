@@ -182,8 +182,9 @@ def prepared_run(
     from interp.controller.inputs.automatic_inputs import OPERATOR
     from interp.controller.inputs.input_script import Script
     from interp.controller.state.profile import Profile
+    from interp.executors import available
     from interp.program.load import Limits
-    from interp.session import RunSetup, available, submit_of
+    from interp.session import RunSetup, submit_of
 
     chosen = options.io
     is_auto = str(chosen) == _AUTO or (chosen is None and is_terminal)

@@ -6,8 +6,9 @@ import pytest
 
 from grammar.syntax.source import Source
 from interp.controller.state.profile import Profile
+from interp.executors import EXECUTORS
 from interp.program.load import CheckedProgram, Limits, load
-from interp.session import EXECUTORS, RunSetup, run_program
+from interp.session import RunSetup, run_program
 from interp.values.builtins import BUILTINS, FUNCTIONS, WEIGHTS
 
 _DATA = """DEF main ( )

@@ -262,7 +262,9 @@ def _cases(words: Sequence[str]) -> "list[Case]":
 
 
 def _chosen(wanted: list[str] | None, what: str) -> list[str]:
-    from conformance.evaluation.execution import COMPILED, EXECUTORS, ROBOTS, Setup, missing
+    from conformance.evaluation.execution import Setup, missing
+    from interp.executors import COMPILED, EXECUTORS
+    from interp.robot.simulation.factory import ROBOTS
 
     known: tuple[str, ...] = EXECUTORS if what == "executor" else ROBOTS
     if not wanted:

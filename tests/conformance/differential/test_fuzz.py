@@ -15,13 +15,14 @@ from conformance.differential.campaign import fuzz, record_of
 from conformance.differential.divergence import difference, diverged, prepared
 from conformance.differential.random_world import RandomWorld
 from conformance.differential.reduction import reduce_program, statements_of
-from conformance.differential.runs import EXECUTORS, LIMITS, Prepared, available, trace_of
+from conformance.differential.runs import EXECUTORS, LIMITS, trace_of
 from conformance.differential.traces import plain, shown
 from conformance.suite import case
 from grammar.generation.programs import seeded
 from grammar.semantics.types import INT, Array
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.vm.executor import Machine
+from interp.executors import Prepared, available
 from interp.port.events import Sink
 from interp.port.requests import At, Invoke, Poll, Read, Write
 from interp.program.load import Limits

@@ -14,8 +14,9 @@ from interp.controller.inputs.input_script import Script
 from interp.controller.quiet_time import QuietTime
 from interp.controller.requests import waits
 from interp.controller.state.profile import Profile
+from interp.executors import available
 from interp.program.load import CheckedProgram, Limits, load
-from interp.session import RunResult, RunSetup, available, run_program
+from interp.session import RunResult, RunSetup, run_program
 
 MACHINES = [name for name in available() if name != "tree"]
 CONFIG = "DEFDAT $CONFIG\nDECL INT COUNT=0\nDECL INT OTHER=0\nDECL REAL ZERO=0.0\nENDDAT\n"

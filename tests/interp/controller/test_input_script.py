@@ -27,8 +27,9 @@ from interp.controller.inputs.input_script import (
 )
 from interp.controller.requests import waits
 from interp.controller.state.profile import Profile
+from interp.executors import EXECUTORS
 from interp.program.load import Limits, load
-from interp.session import EXECUTORS, RunSetup, run_program
+from interp.session import RunSetup, run_program
 
 Go = Callable[..., Any]
 

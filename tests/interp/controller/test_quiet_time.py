@@ -11,8 +11,9 @@ from interp.controller.inputs.input_script import Script
 from interp.controller.quiet_time import QuietTime
 from interp.controller.requests.waits import Waits
 from interp.controller.state.profile import Profile
+from interp.executors import available
 from interp.program.load import load
-from interp.session import RunResult, RunSetup, available, run_program
+from interp.session import RunResult, RunSetup, run_program
 
 WAITS = """DEF main ( )
 INTERRUPT DECL 3 WHEN $IN[3] DO SEEN ( )

@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from conformance.suite.case import CASES
 from grammar.syntax.source import Source
 from interp.controller.state.profile import Profile
+from interp.executors import EXECUTORS
 from interp.program.load import CheckedProgram, load
 from interp.robot.kinematics.machine_reader import read_machine
-from interp.session import EXECUTORS, RunResult, RunSetup, run_program
+from interp.session import RunResult, RunSetup, run_program
 
 WITH_TABLE = CASES / "motion" / "$machine.dat"
 """An arm with a slide, E1, and a turntable, E2."""

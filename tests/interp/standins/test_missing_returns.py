@@ -3,8 +3,9 @@
 import pytest
 
 from grammar.syntax.source import Source
+from interp.executors import EXECUTORS
 from interp.program.load import Limits, load
-from interp.session import EXECUTORS, RunSetup, run_program
+from interp.session import RunSetup, run_program
 from interp.values.faults import Fault
 
 TEXT = """DEF main ( )

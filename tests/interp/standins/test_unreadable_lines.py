@@ -3,8 +3,9 @@
 import pytest
 
 from grammar.syntax.source import Source
+from interp.executors import EXECUTORS
 from interp.program.load import CheckedProgram, load
-from interp.session import EXECUTORS, RunResult, RunSetup, run_program
+from interp.session import RunResult, RunSetup, run_program
 from interp.standins.unreadable_lines import COUNT, UNREADABLE
 from interp.values.faults import LinkError
 
