@@ -105,7 +105,7 @@ class Rounding:
         bend = x2 * x2 + x1 * x3 + y2 * y2 + y1 * y3 + c * (x3 * y1 + 2.0 * x2 * y2 + x1 * y3)
         root = np.sqrt(square)
         w1, w2, w3 = (
-            w / self._way.length for w in (root, half / root, bend / root - half**2 / root**3)
+            w / self.way.length for w in (root, half / root, bend / root - half**2 / root**3)
         )
         inner = (1.0 / w1, -w2 / w1**3, (3.0 * w2 * w2 - w1 * w3) / w1**5)
         return np.stack(chained(one, inner)), np.stack(chained(other, inner))
@@ -117,15 +117,15 @@ class Rounding:
 
     def _inner(self, u: Array) -> Array:
         """Return the parameter v for u."""
-        return self._way.parameters(u * self._way.length)
+        return _inner(self, u.tobytes())
 
     @cached_property
-    def _way(self) -> ArcLength:
+    def way(self) -> ArcLength:
         """The length along the curve as a function of v, in sums of both sides."""
         (a, b), c = self._shares, self.cosine
 
         def tangents(v: Array) -> Array:
-            one, other = a * _side(1.0 - v, self.slope)[1], b * _side(v, self.slope)[1]
+            one, other = a * _side_rate(1.0 - v, self.slope), b * _side_rate(v, self.slope)
             return np.stack((one + c * other, math.sqrt(1.0 - c * c) * other), axis=1)
 
         return ArcLength(tangents)
@@ -219,12 +219,17 @@ def chained(
     return (f1 * x1, f2 * x1**2 + f1 * x2, f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3)
 
 
+def _side_rate(v: Array, slope: float) -> Array:
+    """Return the first derivative of one side of a rounding."""
+    return v * v * (3.0 * (4.0 - slope) + 4.0 * (slope - 3.0) * v)
+
+
 def _side(v: Array, slope: float) -> tuple[Array, Array, Array, Array]:
     """Return the polynomial of one side of a rounding, and its derivatives."""
     c, d = 4.0 - slope, slope - 3.0
     return (
         v**3 * (c + d * v),
-        v**2 * (3.0 * c + 4.0 * d * v),
+        _side_rate(v, slope),
         v * (6.0 * c + 12.0 * d * v),
         6.0 * c + 24.0 * d * v,
     )
@@ -237,3 +242,11 @@ def _rates(transition: Rounding | Overlap, parameters: bytes) -> tuple[Array, Ar
     one.setflags(write=False)
     other.setflags(write=False)
     return one, other
+
+
+@lru_cache(maxsize=16)  # values and derivatives are computed at the same parameters
+def _inner(transition: Rounding, parameters: bytes) -> Array:
+    """Return the parameter v of a rounding for u, the float64 of an array; it is read-only."""
+    v = transition.way.parameters(np.frombuffer(parameters) * transition.way.length)
+    v.setflags(write=False)
+    return v
