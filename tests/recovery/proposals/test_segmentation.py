@@ -6,9 +6,9 @@ from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.lexer import SKIPPED
 from grammar.parser.recognizer import Recognizer
+from recovery import tuning
 from recovery.forms.rule_matcher import RuleMatcher
 from recovery.forms.symbols import Token
-from recovery.proposals import segmentation
 from recovery.proposals.segmentation import Segmenter
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR.with_name("preliminary.g4")))
@@ -48,7 +48,7 @@ def test_what_is_no_token_has_no_parts() -> None:
 def test_enormous_lines_are_not_cut(monkeypatch: pytest.MonkeyPatch) -> None:
     """A line longer than any statement has no parts: to find them would take hours."""
     assert CUTTER.parts(words_of("(" * 3_000)) is None
-    monkeypatch.setattr(segmentation, "LONGEST_SEGMENTED", 40)
+    monkeypatch.setattr(tuning, "LONGEST_SEGMENTED", 40)
     assert [1] * 40 == [len(part) for part in CUTTER.parts(words_of("(" * 40)) or []]
     assert CUTTER.parts(words_of("(" * 41)) is None
 
