@@ -195,7 +195,7 @@ def _texts(key: str, value: object) -> tuple[str, ...]:
 
 
 def _codes(key: str, value: object) -> tuple[str, ...]:
-    from grammar.diagnostics.suppression import Selection
+    from grammar.diagnostics.selection import Selection
 
     try:
         return Selection.of(_texts(key, value)).select

@@ -15,14 +15,14 @@ from typing import cast
 from recovery.clustering.cause import no_negatives
 from recovery.clustering.cluster import cluster
 from recovery.clustering.negative_score import negative_counter
-from recovery.failure_records import FailureIndex, FailureRecords
 from recovery.growth.answers import answered
 from recovery.growth.growth import LedgerSteps
 from recovery.negatives.negatives import Negative
-from recovery.records import StartRecord, SurveyRecord
+from recovery.record.failure_records import FailureIndex, FailureRecords
+from recovery.record.record_types import StartRecord, SurveyRecord
+from recovery.record.survey_record import record_of
 from recovery.survey.result_cache import key_of
 from recovery.survey.survey import Survey
-from recovery.survey_record import record_of
 from support.files.result_store import ResultStore
 from support.parallel.progress import Progress, no_progress
 
@@ -36,7 +36,7 @@ def analyse(
     on_found: Progress = no_progress,
     on_done: Progress = no_progress,
 ) -> SurveyRecord:
-    """Return the record of a survey (`recovery.survey_record`).
+    """Return the record of a survey (`recovery.record.survey_record`).
 
     Proposals are tried on ``negatives``. ``cache`` is the folder of stored records; ``on_found``
     and ``on_done`` report progress.

@@ -21,7 +21,7 @@ from krl.terminal.survey_summary import share
 from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
-    from recovery.records import GrowthRecord, StepRecord
+    from recovery.record.record_types import GrowthRecord, StepRecord
 
 _DEFAULT_OUT = Path("reports", "out", "growth")
 _BIGGEST = 14

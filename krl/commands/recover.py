@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from grammar.notation.model import Grammar
     from recovery.growth.growth import LedgerSteps
     from recovery.negatives.negatives import Negative
-    from recovery.records import StartRecord, SurveyRecord
+    from recovery.record.record_types import StartRecord, SurveyRecord
     from recovery.survey.survey import Survey
 
 _DEFAULT_OUT = Path("reports", "out", "recover")
@@ -186,7 +186,7 @@ class _Surveyor:
 
     def record(self, grammar: "Grammar", name: str) -> "SurveyRecord":
         """Return the record of the survey under a grammar."""
-        from recovery.survey_record import record_without_causes
+        from recovery.record.survey_record import record_without_causes
 
         found = self._survey(grammar, "surveying")
         return self._analysed(found, name, "", record_without_causes(found, name))

@@ -67,9 +67,9 @@ def recover_auto(
     from grammar.parser.lexer import ABSENT, lexer_of
     from recovery.induction.corpus_lines import drawn_origins, held_out
     from recovery.induction.induced_ledger import InducedLedger
+    from recovery.induction.language import KRL, language_of
     from recovery.induction.rounds import Induction
     from recovery.induction.target_comparison import compared
-    from recovery.language import KRL, language_of
     from recovery.negatives.generate import evenly
     from recovery.negatives.negatives import NegativeSet
 

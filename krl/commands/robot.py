@@ -11,7 +11,7 @@ import typer
 
 from krl.errors import FINE, InputError
 from krl.extras import expected_extras
-from krl.running.robot_options import read_machine_file
+from krl.running.arm_files import read_machine_file
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.kinematics import Kinematics

@@ -21,7 +21,7 @@ from grammar.check.project.framework import Checked, Findings, check_module, che
 from grammar.check.project.project_check import Reading, read_source
 from grammar.check.project.suppression_comments import apply_suppressions, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
-from grammar.diagnostics.suppression import Selection
+from grammar.diagnostics.selection import Selection
 from grammar.semantics.link import File, Project, Workspace, link
 from grammar.semantics.project_grouping import projects_of
 from grammar.semantics.scopes import Answer, Found, Module, Scope, Undetermined

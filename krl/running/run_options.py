@@ -15,8 +15,8 @@ import typer
 from krl.errors import InputError, as_input_errors, one_line
 from krl.extras import ARM, expected_extras
 from krl.project_settings import settings_of
+from krl.running.arm_files import read_arm
 from krl.running.program_loading import load_program
-from krl.running.robot_options import robot_options
 
 if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
@@ -194,7 +194,7 @@ def prepared_run(
         script = Script() if chosen is None else Script.read(_text(chosen), str(chosen))
     if is_auto and chosen is None:
         typer.echo("inputs: automatic (--io auto is the default in a terminal)", err=True)
-    own = robot_options(
+    own = read_arm(
         *(options.machine, options.urdf, options.mjcf, options.scene),
         has_robot=options.robot is not Robot.NONE,
     )

@@ -13,7 +13,7 @@ from krl.errors import one_line
 from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
-    from recovery.records import ClusterRecord, StartRecord, SurveyRecord
+    from recovery.record.record_types import ClusterRecord, StartRecord, SurveyRecord
 
 _ROWS = 15
 _WIDE = 120  # columns; narrower terminals have no room for examples

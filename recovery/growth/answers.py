@@ -14,7 +14,7 @@ from typing import TypedDict
 from recovery.growth.growth import LedgerSteps
 from recovery.growth.timeline import Timeline, read_through
 from recovery.ledger.construct_record import construct_record
-from recovery.records import ClusterRecord, ConstructRecord
+from recovery.record.record_types import ClusterRecord, ConstructRecord
 from recovery.survey.survey import Survey
 from support.parallel.progress import Progress, no_progress
 

@@ -21,7 +21,7 @@ from recovery.ledger.construct import Construct
 from recovery.ledger.construct_record import START_RECORD, construct_record
 from recovery.ledger.lookahead import decisions, share_decided
 from recovery.ledger.metrics import MEANINGS, metrics
-from recovery.records import GrowthRecord, SkippedRecord, StepRecord
+from recovery.record.record_types import GrowthRecord, SkippedRecord, StepRecord
 from recovery.survey.result_cache import key_of
 from recovery.survey.surveyed_files import SurveyedFile
 from support.files.discovery import Skipped

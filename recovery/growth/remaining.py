@@ -13,7 +13,7 @@ from grammar.parser.failures import FailureFinder
 from grammar.parser.line_reader import LineReader, Spot
 from grammar.parser.recognizer import Recognizer
 from recovery.negatives.language_facts import violation
-from recovery.records import (
+from recovery.record.record_types import (
     AmbiguousLineRecord,
     AmbiguousRecord,
     RemainingFileRecord,

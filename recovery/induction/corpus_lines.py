@@ -8,7 +8,7 @@ from functools import cached_property
 from random import Random
 
 from grammar.parser.lexer import Lexer
-from recovery.language import CorpusFile
+from recovery.induction.language import CorpusFile
 from recovery.proposals.blocks import lines_of
 from recovery.tuning import INNER_SHARE
 

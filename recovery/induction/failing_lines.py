@@ -12,7 +12,7 @@ from grammar.parser.failures import Failure
 from grammar.parser.recognizer import Recognizer, State
 from recovery.brackets import BRACKETS, CLOSING
 from recovery.induction.inferred_keywords import InferredKeywords
-from recovery.language import CorpusFile
+from recovery.induction.language import CorpusFile
 from recovery.ledger.construct import Evidence
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import PLACES_IN_ONE_FILE, PLACES_REMEMBERED, PLACES_SHOWN, SEVERAL

@@ -22,7 +22,7 @@ from typing import NamedTuple
 from grammar.parser.failures import Failure
 from grammar.parser.lexer import SKIPPED, Lexer
 from recovery.induction.corpus_lines import CorpusLines
-from recovery.language import CorpusFile
+from recovery.induction.language import CorpusFile
 from recovery.survey.failing_line import source_lines
 from recovery.survey.suspected_keywords import names_of_line
 from recovery.tuning import (

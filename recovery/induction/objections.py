@@ -25,8 +25,8 @@ from recovery.tuning import GAIN_PER_NEGATIVE
 class EditReview:
     """Reviews edits of a recogniser's grammar with the negatives that are ``rejected``.
 
-    ``reserved_in`` returns the words of a line that cannot be names (`recovery.language.Language`),
-    ``texts`` are programs that the recogniser reads.
+    ``reserved_in`` returns the words of a line that cannot be names (`Language` in
+    `recovery.induction.language`), ``texts`` are programs that the recogniser reads.
     """
 
     recognizer: Recognizer

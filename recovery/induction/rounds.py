@@ -40,6 +40,7 @@ from recovery.induction.folding import folds_of, size
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.inference import inner_edits, outer_edits
 from recovery.induction.inferred_keywords import InferredKeywords, names_read
+from recovery.induction.language import CorpusFile, Language
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import split_literals
@@ -57,7 +58,6 @@ from recovery.induction.steps import (
     joined,
 )
 from recovery.induction.supported_forms import SupportedForms
-from recovery.language import CorpusFile, Language
 from recovery.ledger.construct import Evidence
 from recovery.negatives.negatives import NegativeSet
 from recovery.proposals.edit_site import LinePattern

@@ -10,9 +10,9 @@ from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.wellformed import problem
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
+from recovery.induction.language import CorpusFile
 from recovery.induction.names_rule import names_kept
 from recovery.induction.steps import AcceptedStep, Reading, RefusedStep, joined
-from recovery.language import CorpusFile
 from recovery.tuning import GRAMMARS_KEPT
 
 #: The failures of each file, in its order.

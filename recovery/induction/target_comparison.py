@@ -10,7 +10,7 @@ from typing import TypedDict
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
-from recovery.language import KRL, CorpusFile, Language
+from recovery.induction.language import KRL, CorpusFile, Language
 from recovery.negatives.negatives import NegativeSet
 
 _SENTENCES = 1_000

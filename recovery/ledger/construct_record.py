@@ -8,7 +8,7 @@ from dataclasses import fields
 from grammar.notation.edits import apply, describe
 from grammar.notation.model import Grammar
 from recovery.ledger.construct import Construct, Evidence
-from recovery.records import ConstructRecord
+from recovery.record.record_types import ConstructRecord
 
 #: The restrictive start as a step of the growth, with the same fields.
 START_RECORD: ConstructRecord = {

@@ -16,8 +16,8 @@ from grammar.parser.sentences import Sentences, Speller
 from krl.cli import main
 from recovery.induction import target_comparison
 from recovery.induction.induced_ledger import without, without_some
+from recovery.induction.language import KRL
 from recovery.induction.target_comparison import compared, within_reach
-from recovery.language import KRL
 from recovery.ledger.ledger import Ledger, in_force
 
 NEGATIVES = GRAMMAR.parents[1] / "corpus" / "negatives"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from grammar.check.project.report import CheckReport
     from grammar.diagnostics.codes import Severity
     from grammar.diagnostics.diagnostic import Diagnostic, Located
-    from grammar.diagnostics.suppression import Selection
+    from grammar.diagnostics.selection import Selection
 
 #: Codes of notes about why the robot stops; they are not faults.
 _STOPS = ("KRL601", "KRL602", "KRL603", "KRL604")
@@ -175,7 +175,7 @@ def _agreed(paths: Sequence[Path], file: Path | None, has_none: bool) -> Setting
 
 def _selection(agreed: Settings, select: list[str] | None, ignore: list[str] | None) -> "Selection":
     """Return the selected findings; a choice on the command line replaces the one in settings."""
-    from grammar.diagnostics.suppression import Selection
+    from grammar.diagnostics.selection import Selection
 
     with as_input_errors(ValueError):
         return Selection.of(select or agreed.select, (*agreed.ignore, *(ignore or ())))

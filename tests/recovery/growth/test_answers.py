@@ -13,7 +13,7 @@ from recovery.analysis import analyse, with_answers
 from recovery.growth.answers import answered
 from recovery.ledger.construct import Construct
 from recovery.ledger.ledger import replay
-from recovery.records import ClusterRecord
+from recovery.record.record_types import ClusterRecord
 from recovery.survey.survey import Survey, survey
 
 START = read_file(GRAMMAR.with_name("preliminary.g4"))

@@ -13,7 +13,7 @@ from recovery.growth.growth import growth
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.ledger import replay
 from recovery.ledger.metrics import metrics
-from recovery.records import GrowthRecord
+from recovery.record.record_types import GrowthRecord
 from support.files.discovery import IngestError
 
 START = read_file(GRAMMAR.with_name("preliminary.g4"))

@@ -4,7 +4,7 @@ import pytest
 
 from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
-from recovery.language import CorpusFile
+from recovery.induction.language import CorpusFile
 
 _START = """grammar Toy;
 

@@ -6,7 +6,7 @@ from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.inferred_keywords import InferredKeywords
-from recovery.language import CorpusFile
+from recovery.induction.language import CorpusFile
 
 
 def _keywords(toy: Grammar, files: dict[str, str], types: tuple[str, ...] = ()) -> InferredKeywords:

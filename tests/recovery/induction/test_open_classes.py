@@ -9,9 +9,9 @@ from grammar.notation.wellformed import misuse, problem
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.grammar_view import GrammarView
+from recovery.induction.language import CorpusFile
 from recovery.induction.open_classes import OPENINGS, is_open
 from recovery.induction.rounds import Induction
-from recovery.language import CorpusFile
 from recovery.negatives.negatives import Negative, NegativeSet
 
 _GRAMMAR = """grammar Toy;

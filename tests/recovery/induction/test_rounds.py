@@ -28,11 +28,11 @@ from recovery.induction import folding, list_lengths, rounds
 from recovery.induction.corpus_lines import drawn_origins, held_out
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.induced_ledger import InducedLedger, without
+from recovery.induction.language import CorpusFile
 from recovery.induction.names_rule import with_names
 from recovery.induction.objections import EditReview
 from recovery.induction.rounds import Induction
 from recovery.induction.steps import AcceptedStep, InferredStep, RefusedStep, described
-from recovery.language import CorpusFile
 from recovery.ledger.ledger import in_force
 from recovery.negatives.negatives import Negative, NegativeSet
 
@@ -614,7 +614,7 @@ def test_a_step_that_mends_nothing_is_refused(growth: InducedLedger) -> None:
 _GROWN = """
 import json, sys
 from grammar.notation.g4 import read
-from recovery.language import CorpusFile
+from recovery.induction.language import CorpusFile
 from recovery.induction.rounds import Induction
 from recovery.negatives.negatives import NegativeSet
 start, files = json.load(sys.stdin)

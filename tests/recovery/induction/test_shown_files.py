@@ -8,9 +8,9 @@ from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
 from recovery.induction.inferred_keywords import InferredKeywords
+from recovery.induction.language import CorpusFile
 from recovery.induction.shown_files import ShownFiles
 from recovery.induction.steps import AcceptedStep
-from recovery.language import CorpusFile
 from recovery.ledger.construct import Evidence
 
 

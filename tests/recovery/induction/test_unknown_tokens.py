@@ -6,8 +6,8 @@ from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
 from grammar.parser.lexer import lexer_of
 from grammar.parser.recognizer import Recognizer
+from recovery.induction.language import CorpusFile
 from recovery.induction.rounds import Induction
-from recovery.language import CorpusFile
 from recovery.negatives.negatives import NegativeSet
 from recovery.proposals.unknown_tokens import unknown_tokens
 

@@ -13,7 +13,7 @@ from grammar.parser.shortest_paths import Paths
 from recovery.clustering.cause import Proposal
 from recovery.clustering.cluster import Cluster, Clusters
 from recovery.clustering.edit_trial import edited
-from recovery.records import ProposalRecord
+from recovery.record.record_types import ProposalRecord
 from recovery.survey.survey import Survey
 from recovery.survey.surveyed_files import SurveyedFile
 

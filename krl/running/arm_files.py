@@ -1,4 +1,4 @@
-"""Options for the arm and its surroundings, for commands that run programs."""
+"""The arm and the scene in the files of --machine, --urdf, --mjcf and --scene."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +21,7 @@ class OwnRobot:
     scene: "Scene | None" = None
 
 
-def robot_options(
+def read_arm(
     machine: Path | None,
     urdf: Path | None,
     mjcf: Path | None,

@@ -11,7 +11,7 @@ from typing import TypedDict
 
 from grammar.parser.lexer import ERROR, Lexer
 from recovery.clustering.cluster import Clusters
-from recovery.records import FailureRecord
+from recovery.record.record_types import FailureRecord
 from recovery.survey.survey import Survey
 
 

@@ -9,12 +9,12 @@ import pytest
 from grammar.notation.g4 import read, read_file
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
+from recovery.induction.language import CorpusFile, language_of
 from recovery.induction.rounds import Induction
-from recovery.language import CorpusFile, language_of
 from recovery.negatives.negatives import NegativeSet
 from support.files.discovery import IngestError
 
-_FOLDER = Path(__file__).with_name("induction") / "assembler"
+_FOLDER = Path(__file__).with_name("assembler")
 _START = read_file(_FOLDER / "start.g4")
 _FILES = language_of(".s").files([_FOLDER])
 

@@ -11,9 +11,9 @@ from typing import cast
 
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import Cluster, Clusters, Member
-from recovery.failure_records import failure_records
-from recovery.proposal_review import Reviewer
-from recovery.records import (
+from recovery.record.failure_records import failure_records
+from recovery.record.proposal_review import Reviewer
+from recovery.record.record_types import (
     ClusterRecord,
     CopyRecord,
     ExampleRecord,

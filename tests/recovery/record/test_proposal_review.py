@@ -15,8 +15,8 @@ from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import Cluster, Clusters, cluster
 from recovery.clustering.negative_score import negative_counter
 from recovery.negatives.negatives import Negative
-from recovery.proposal_review import Reviewer
-from recovery.records import ProposalRecord
+from recovery.record.proposal_review import Reviewer
+from recovery.record.record_types import ProposalRecord
 from recovery.survey.survey import Survey, survey
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))

@@ -12,9 +12,9 @@ from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cluster import cluster
-from recovery.records import SurveyRecord
+from recovery.record.record_types import SurveyRecord
+from recovery.record.survey_record import record_of
 from recovery.survey.survey import Survey, survey, survey_texts
-from recovery.survey_record import record_of
 
 PRELIMINARY = read_file(GRAMMAR.with_name("preliminary.g4"))
 RECOGNIZER = Recognizer(PRELIMINARY)
