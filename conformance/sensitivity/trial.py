@@ -81,7 +81,10 @@ def is_possible() -> bool:
 
 
 def kept_trials(folder: Path | None) -> ResultStore:
-    """Return the store of the trials of this code in a folder, as a context manager."""
+    """Return the store in a folder of what trials of seeded faults found, as a context manager.
+
+    It holds for this code only.
+    """
     return ResultStore(
         folder, f"mutants {code_digest('conformance', 'grammar', 'interp', 'support')}"
     )

@@ -1,1 +1,1 @@
-"""The conformance suite: rules, cases, their expectations, and the linter of cases."""
+"""The conformance suite: rules, cases, and their expectations."""

@@ -27,23 +27,21 @@ from grammar.semantics.declared_types import DeclaredTypes
 from grammar.semantics.package_scope import PackageScope, called_packages
 from grammar.semantics.predefined import System
 from grammar.semantics.project_grouping import grouped
+from grammar.semantics.project_scope import Globals, PartlyRead, nearest
 from grammar.semantics.scopes import (
     REST,
     Answer,
     Found,
-    Globals,
     Module,
     NotFound,
     Outer,
-    PartlyRead,
     Reason,
     Scope,
-    SystemScope,
     Undetermined,
-    nearest,
 )
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import Access, ImportSymbol, Kind, ModuleTable, RoutineTable, Symbol
+from grammar.semantics.system_scope import SystemScope
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 from support.lazy_dataclass import dataclass

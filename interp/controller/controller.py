@@ -53,7 +53,7 @@ _PAUSE = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class ArmState:
-    """The state of the arm.
+    """The state of the arm, as a debugger shows it.
 
     ``time`` is in µs. ``running`` is the line of the motion that started last, ``None`` if the arm
     has no motion. ``waiting`` and ``ended`` are the numbers of motions that have not ended and that

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final
 
 from grammar.semantics.numbers import signed
-from grammar.semantics.types import UNKNOWN, Enumeration, Type
+from grammar.semantics.types import INT_MAX, UNKNOWN, Enumeration, Type
 from grammar.syntax import ast
+from grammar.syntax.walk import without_parentheses
 from interp.program.load import Unit
 from interp.values.faults import LinkError
 from interp.values.operators import apply_unary
@@ -56,3 +57,11 @@ def literal_value(unit: Unit, node: ast.Expression, wanted: Type) -> Value:
     if (rule := LITERALS.get(type(node))) is None:
         raise LinkError("no literal")
     return rule(node)
+
+
+def integer_literal(node: ast.Expression) -> int | None:
+    """Return the value of an INT literal, also in parentheses; ``None`` for all else."""
+    node = without_parentheses(node)
+    if isinstance(node, ast.IntegerLiteral) and node.value <= INT_MAX:
+        return node.value
+    return None

@@ -17,8 +17,9 @@ from grammar.check.project.framework import Checked, typed_module
 from grammar.semantics.link import File, Project, extended
 from grammar.semantics.packages import load_packages
 from grammar.semantics.resolve import resolve
-from grammar.semantics.scopes import Found, Module, SystemScope
+from grammar.semantics.scopes import Found, Module
 from grammar.semantics.symbols import Kind
+from grammar.semantics.system_scope import SystemScope
 from grammar.semantics.types import UNKNOWN, Enumeration, Scalar, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module

@@ -19,8 +19,9 @@ from grammar.check.analysis.context import Context
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
 from grammar.semantics.assignability import assignable
-from grammar.semantics.scopes import Found, Scope, SystemScope
+from grammar.semantics.scopes import Found, Scope
 from grammar.semantics.symbols import Kind, Symbol
+from grammar.semantics.system_scope import SystemScope
 from grammar.semantics.types import (
     INT,
     REAL,

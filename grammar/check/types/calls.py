@@ -13,8 +13,9 @@ from grammar.check.analysis.signal_direction import side_of
 from grammar.check.analysis.type_checker import TypeChecker
 from grammar.semantics.assignability import misfit, passable
 from grammar.semantics.package_scope import PackageScope
-from grammar.semantics.scopes import Found, Scope, SystemScope
+from grammar.semantics.scopes import Found, Scope
 from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
+from grammar.semantics.system_scope import SystemScope
 from grammar.semantics.types import UNKNOWN, Array, Type, Verdict
 from grammar.syntax import ast
 

@@ -18,7 +18,6 @@ from interp.bytecode.cell_layout import Raw, cells_of, offset_of, size, value_at
 from interp.bytecode.compiler.calls import Calls
 from interp.bytecode.compiler.code_writer import Label, Writer
 from interp.bytecode.compiler.context import Context, Shared
-from interp.bytecode.compiler.designators import literal
 from interp.bytecode.compiler.emitter import Emitter, Ended
 from interp.bytecode.compiler.locations import DataCells, SystemVariable
 from interp.bytecode.compiler.tables import Tables
@@ -27,7 +26,7 @@ from interp.bytecode.program import CodeKind, Program
 from interp.bytecode.verifier.verify import Verified
 from interp.bytecode.vm.executor import Machine
 from interp.port.requests import End, Fail
-from interp.program.literals import literal_value
+from interp.program.literals import integer_literal, literal_value
 from interp.program.load import CheckedProgram
 from interp.program.reads import structure_of
 from interp.program.variables import data_lists, data_variables, first_values
@@ -130,7 +129,7 @@ class _DataList:
             cells: list[Raw | None] = [None] * size(made)
             for one in node.components:
                 indices = one.indices or ()
-                steps = [literal(index) for index in indices if index is not None]
+                steps = [integer_literal(index) for index in indices if index is not None]
                 found = offset_of(made, (one.name.key, *(step or 0 for step in steps)))
                 if found is None or None in indices[:-1]:
                     raise fault("inadmissible")

@@ -11,9 +11,8 @@ from typing import Protocol
 
 from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind, SignalSymbol
-from grammar.semantics.types import BOOL, INT, INT_MAX, UNKNOWN, Array, Type
+from grammar.semantics.types import BOOL, INT, UNKNOWN, Array, Type
 from grammar.syntax import ast
-from grammar.syntax.walk import without_parentheses
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import array_sizes, elements
 from interp.bytecode.compiler.emitter import Emitter
@@ -32,6 +31,7 @@ from interp.bytecode.compiler.locations import (
     View,
     ViewParameter,
 )
+from interp.program.literals import integer_literal
 from interp.program.variables import signal_ends, untyped
 from interp.values.faults import LinkError
 
@@ -151,7 +151,7 @@ class Designators:
         if not isinstance(base.type, Array):
             raise self._emitter.unlinked("an index of what is no array")
         sizes = base.type.sizes
-        fixed = [number for node in given if (number := literal(node)) is not None]
+        fixed = [number for node in given if (number := integer_literal(node)) is not None]
         if isinstance(base, FixedCells) and len(fixed) == len(given) <= len(sizes):
             found = self._memory.fixed_element(base, tuple(fixed))
             if found is not None:
@@ -202,7 +202,7 @@ class Designators:
     def _remote_element(self, base: SystemVariable, nodes: list[ast.Expression]) -> SystemVariable:
         steps: list[int | IndexCell] = []
         for node in nodes:
-            number = literal(node)
+            number = integer_literal(node)
             if number is None:
                 self._memory.convert(self._value(node), INT)
                 hole = IndexCell(self._writer.temporary(INT))
@@ -215,14 +215,6 @@ class Designators:
     def _indices(self, nodes: list[ast.Expression]) -> None:
         for node in nodes:
             self._memory.convert(self._value(node), INT)
-
-
-def literal(node: ast.Expression) -> int | None:
-    """Return the value of an INT literal, or ``None``."""
-    node = without_parentheses(node)
-    if isinstance(node, ast.IntegerLiteral) and node.value <= INT_MAX:
-        return node.value
-    return None
 
 
 def _remote_element(base: SystemVariable, steps: tuple[int | IndexCell, ...]) -> SystemVariable:

@@ -25,7 +25,7 @@ from grammar.syntax.walk import left_chain
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import bits_of
 from interp.bytecode.compiler.code_writer import Label
-from interp.bytecode.compiler.designators import Designators, literal
+from interp.bytecode.compiler.designators import Designators
 from interp.bytecode.compiler.emitter import Emitter
 from interp.bytecode.compiler.loads_and_stores import Memory
 from interp.bytecode.compiler.locations import (
@@ -38,7 +38,7 @@ from interp.bytecode.compiler.locations import (
     Value,
     ViewParameter,
 )
-from interp.program.literals import LITERALS, enumeration_constant
+from interp.program.literals import LITERALS, enumeration_constant, integer_literal
 from interp.program.reads import UNKNOWN_STRUCTURE, structure_of
 from interp.values.faults import Fault, LinkError
 from interp.values.operators import Primitive, Selection, kind_of, select
@@ -130,7 +130,7 @@ class Expressions:
             case ast.Unary(operator="-" | "+" as sign):
                 number = self.literal_integer(node.operand)
                 return -number if number is not None and sign == "-" else number
-        return literal(node)
+        return integer_literal(node)
 
     def _constant(self, node: ast.EnumConstant, wanted: Type) -> Value:
         try:

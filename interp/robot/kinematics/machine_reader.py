@@ -1,4 +1,4 @@
-"""The reader of a `$machine.dat`; the module `machine_data` says what the values mean."""
+"""The reader of a `$machine.dat`, even a partly understood one; the values are `machine_data`'s."""
 
 from __future__ import annotations
 

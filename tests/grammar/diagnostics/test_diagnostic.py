@@ -1,4 +1,4 @@
-"""Findings are values in a stable order, become records and text, and can be silenced."""
+"""Findings are values in a stable order, become records and text, and suggest what was meant."""
 
 import json
 from random import Random
@@ -11,13 +11,6 @@ from grammar.diagnostics.codes import by_code
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region, diagnose, in_order, records
 from grammar.diagnostics.did_you_mean import did_you_mean, nearest
 from grammar.diagnostics.rendering import rendered, summary
-from grammar.diagnostics.suppression import (
-    Malformed,
-    Selection,
-    Suppression,
-    suppression,
-    unsuppressed,
-)
 from grammar.syntax.source import Source
 
 TEXT = "DEF A()\n  $ORI_TYPE = #CONST\n\tWAIT SEC 1\nEND\n"
@@ -198,94 +191,6 @@ def test_summary_counts() -> None:
     """How many of each, and none is said too."""
     assert "1 error, 2 notes" == summary({"note": 2, "error": 1})
     assert "no findings" == summary({})
-
-
-# ----------------------------------------------------------------------- suppress comments
-
-
-@pytest.mark.parametrize(
-    ("comment", "expected"),
-    [
-        ("; krl: ignore[KSS2296] proven", Suppression(7, ("KSS2296",), False, "proven")),
-        (";krl:ignore[krl2, KSS1388]", Suppression(7, ("KRL2", "KSS1388"), False, "")),
-        (";; KRL: Ignore-File [KRL601] x", Suppression(7, ("KRL601",), True, "x")),
-    ],
-)
-def test_suppress_comments(comment: str, expected: Suppression) -> None:
-    """A comment names what it silences, and may say why."""
-    assert expected == suppression(comment, 7)
-
-
-@pytest.mark.parametrize(
-    ("comment", "word"),
-    [
-        ("; krl: ignore", "name what"),
-        ("; krl: ignore[]", "name what"),
-        ("; krl: ignore-file[ , ] all of it", "name what"),
-        ("; krl: ignore[KSS9999]", "KSS9999"),
-        ("; krl: ignore[everything]", "EVERYTHING"),
-    ],
-)
-def test_suppress_comments_that_say_nothing(comment: str, word: str) -> None:
-    """A comment that is meant to silence and does not is told."""
-    found = suppression(comment, 7)
-    assert isinstance(found, Malformed)
-    assert word in found.problem
-
-
-@pytest.mark.parametrize(
-    "comment",
-    [
-        "; ignore[KSS2296]",
-        ";FOLD krl: ignore[KSS2296]",
-        "; krl: the language",
-        "; krl: ignored[KSS2296]",
-        "; krl: ignore-files[KSS2296]",
-        "; see krl: ignore[KSS2296]",
-        ";",
-    ],
-)
-def test_other_comments_silence_nothing(comment: str) -> None:
-    """Only a comment that begins so is meant."""
-    assert suppression(comment, 1) is None
-
-
-def test_comments_silence_their_line_or_their_file() -> None:
-    """What silences nothing is told as well."""
-    two, three, other = finding(2), finding(3), finding(3, slug="rounded")
-    line = Suppression(2, ("KSS",), False, "")
-    idle = Suppression(4, ("KSS",), False, "")
-    assert ([three, other], [idle]) == unsuppressed([two, three, other], [line, idle])
-    whole = Suppression(9, ("KSS2296",), True, "")
-    assert ([other], []) == unsuppressed([two, three, other], [whole])
-    both = unsuppressed([two], [line, whole])
-    assert ([], []) == both
-
-
-@pytest.mark.parametrize(
-    ("select", "ignore", "kept"),
-    [
-        ([], [], {"KSS2296", "KRL601", "KRL101"}),
-        (["KSS"], [], {"KSS2296"}),
-        ([], ["KRL6"], {"KSS2296", "KRL101"}),
-        (["KRL"], ["KRL6"], {"KRL101"}),
-        (["KRL601"], ["KRL6"], {"KRL601"}),
-        (["krl1,kss"], [], {"KSS2296", "KRL101"}),
-        (["KRL"], ["KRL"], set()),
-    ],
-)
-def test_the_longest_beginning_decides(
-    select: list[str], ignore: list[str], kept: set[str]
-) -> None:
-    """Codes are selected and ignored by their beginnings; the nearer one counts."""
-    selection = Selection.of(select, ignore)
-    assert kept == {code for code in ("KSS2296", "KRL601", "KRL101") if selection.keeps(code)}
-
-
-def test_words_that_are_no_code_are_refused() -> None:
-    """A mistyped code on the command line is told, not passed over."""
-    with pytest.raises(ValueError, match="no code begins with KRL99X"):
-        Selection.of([], ["KRL6,KRL99x"])
 
 
 # ---------------------------------------------------------------------------- did you mean

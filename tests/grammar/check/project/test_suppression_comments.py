@@ -1,6 +1,15 @@
 """Comments that silence findings."""
 
-from grammar.check.project.suppression_comments import apply_suppressions, suppression_comments
+import pytest
+
+from grammar.check.project.suppression_comments import (
+    Malformed,
+    Suppression,
+    apply_suppressions,
+    suppression,
+    suppression_comments,
+    unsuppressed,
+)
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.syntax.source import Source
 
@@ -44,3 +53,63 @@ def test_other_comments_are_left_alone() -> None:
     """A file without such comments keeps all findings as they are."""
     wrong = finding("label-twice", 1)
     assert [(1, "KRL404")] == kept("A ; krl is a language: ignore it\n", wrong)
+
+
+@pytest.mark.parametrize(
+    ("comment", "expected"),
+    [
+        ("; krl: ignore[KSS2296] proven", Suppression(7, ("KSS2296",), False, "proven")),
+        (";krl:ignore[krl2, KSS1388]", Suppression(7, ("KRL2", "KSS1388"), False, "")),
+        (";; KRL: Ignore-File [KRL601] x", Suppression(7, ("KRL601",), True, "x")),
+    ],
+)
+def test_suppress_comments(comment: str, expected: Suppression) -> None:
+    """A comment names what it silences, and may say why."""
+    assert expected == suppression(comment, 7)
+
+
+@pytest.mark.parametrize(
+    ("comment", "word"),
+    [
+        ("; krl: ignore", "name what"),
+        ("; krl: ignore[]", "name what"),
+        ("; krl: ignore-file[ , ] all of it", "name what"),
+        ("; krl: ignore[KSS9999]", "KSS9999"),
+        ("; krl: ignore[everything]", "EVERYTHING"),
+    ],
+)
+def test_suppress_comments_that_say_nothing(comment: str, word: str) -> None:
+    """A comment that is meant to silence and does not is told."""
+    found = suppression(comment, 7)
+    assert isinstance(found, Malformed)
+    assert word in found.problem
+
+
+@pytest.mark.parametrize(
+    "comment",
+    [
+        "; ignore[KSS2296]",
+        ";FOLD krl: ignore[KSS2296]",
+        "; krl: the language",
+        "; krl: ignored[KSS2296]",
+        "; krl: ignore-files[KSS2296]",
+        "; see krl: ignore[KSS2296]",
+        ";",
+    ],
+)
+def test_other_comments_silence_nothing(comment: str) -> None:
+    """Only a comment that begins so is meant."""
+    assert suppression(comment, 1) is None
+
+
+def test_comments_silence_their_line_or_their_file() -> None:
+    """What silences nothing is told as well."""
+    two, three = finding("no-such-constant", 2), finding("no-such-constant", 3)
+    other = finding("rounded", 3)
+    line = Suppression(2, ("KSS",), False, "")
+    idle = Suppression(4, ("KSS",), False, "")
+    assert ([three, other], [idle]) == unsuppressed([two, three, other], [line, idle])
+    whole = Suppression(9, ("KSS2296",), True, "")
+    assert ([other], []) == unsuppressed([two, three, other], [whole])
+    both = unsuppressed([two], [line, whole])
+    assert ([], []) == both
