@@ -117,18 +117,12 @@ class Rounding:
 
     def _inner(self, u: Array) -> Array:
         """Return the parameter v for u."""
-        return _inner(self, u.tobytes())
+        return _inner(self.way, u.tobytes())
 
-    @cached_property
+    @property
     def way(self) -> ArcLength:
         """The length along the curve as a function of v, in sums of both sides."""
-        (a, b), c = self._shares, self.cosine
-
-        def tangents(v: Array) -> Array:
-            one, other = a * _side_rate(1.0 - v, self.slope), b * _side_rate(v, self.slope)
-            return np.stack((one + c * other, math.sqrt(1.0 - c * c) * other), axis=1)
-
-        return ArcLength(tangents)
+        return _way(self._shares, self.slope, self.cosine)
 
 
 @dataclass(frozen=True, eq=False)
@@ -244,9 +238,21 @@ def _rates(transition: Rounding | Overlap, parameters: bytes) -> tuple[Array, Ar
     return one, other
 
 
+@lru_cache(maxsize=16)  # a corner tries zones of several sizes that have one shape
+def _way(shares: tuple[float, float], slope: float, cosine: float) -> ArcLength:
+    """Return the length along a rounding as a function of v, in sums of both sides."""
+    a, b = shares
+
+    def tangents(v: Array) -> Array:
+        one, other = a * _side_rate(1.0 - v, slope), b * _side_rate(v, slope)
+        return np.stack((one + cosine * other, math.sqrt(1.0 - cosine * cosine) * other), axis=1)
+
+    return ArcLength(tangents)
+
+
 @lru_cache(maxsize=16)  # values and derivatives are computed at the same parameters
-def _inner(transition: Rounding, parameters: bytes) -> Array:
+def _inner(way: ArcLength, parameters: bytes) -> Array:
     """Return the parameter v of a rounding for u, the float64 of an array; it is read-only."""
-    v = transition.way.parameters(np.frombuffer(parameters) * transition.way.length)
+    v = way.parameters(np.frombuffer(parameters) * way.length)
     v.setflags(write=False)
     return v
