@@ -5,9 +5,7 @@ the `krl check` option with the same name; docs/settings.md lists them.
 """
 
 import difflib
-import os
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import field, replace
 from fnmatch import fnmatchcase
 from importlib import resources
@@ -18,7 +16,6 @@ from krl.errors import InputError
 from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
-    from grammar.diagnostics.baseline import Baseline
     from grammar.diagnostics.diagnostic import Diagnostic
     from support.files.discovery import Found
 
@@ -123,39 +120,6 @@ def _settings(root: Path, table: Mapping[str, Any]) -> Settings:
     if "profile" in given:
         given["profile"] = _profile(root, given["profile"])
     return Settings(root, **given)
-
-
-# ----------------------------------------------------------------------------------- the baseline
-
-
-def read_baseline(file: Path) -> "Baseline":
-    """Return the baseline in a file; raises `InputError`."""
-    from grammar.diagnostics.baseline import Baseline
-    from support.files.untrusted import json_of, read_text
-
-    try:
-        return Baseline.read(json_of(read_text(file)))
-    except OSError as error:
-        hint = f": make it with --write-baseline {file}" if not file.exists() else ""
-        raise InputError(f"{file}: {error.strerror or error}{hint}") from None
-    except ValueError as error:
-        raise InputError(f"{file}: {error}") from None
-
-
-def baseline_place(baseline: Path) -> Callable[[str], str]:
-    """Return a function that makes paths relative to a baseline, whatever the working folder is.
-
-    On Windows, a path on another drive stays absolute.
-    """
-    home = baseline.absolute().parent
-
-    def place(path: str) -> str:
-        whole = Path(path).absolute()
-        with suppress(ValueError):
-            whole = Path(os.path.relpath(whole, home))
-        return whole.as_posix()
-
-    return place
 
 
 # ------------------------------------------------------------------------------- kinds of values

@@ -75,17 +75,17 @@ def _sequence(items: Sequence[Any], change: Change) -> Iterator[Any]:
 
 
 def name(text: str) -> ast.Name:
-    """Return a generated name."""
+    """Return a name for a changed program."""
     return ast.Name(MADE, text)
 
 
 def variable(text: str) -> ast.Variable:
-    """Return a generated variable."""
+    """Return a variable for a changed program."""
     return ast.Variable(MADE, name(text))
 
 
 def integer(value: int) -> ast.IntegerLiteral:
-    """Return a generated literal of a number that is not negative."""
+    """Return an INT literal for a changed program; the number is not negative."""
     return ast.IntegerLiteral(MADE, value)
 
 

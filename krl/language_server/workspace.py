@@ -29,8 +29,9 @@ from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import ModuleTable
 from grammar.syntax.ast import Name
 from grammar.syntax.source import Source
+from krl.baseline_file import baseline_place, read_baseline
 from krl.errors import InputError
-from krl.project_settings import Settings, baseline_place, read_baseline, settings_of
+from krl.project_settings import Settings, settings_of
 from support.files import discovery
 from support.files.decode import Decoded, decode
 from support.files.untrusted import read_bytes

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from krl.baseline_file import baseline_place
 from krl.cli import main
 from krl.errors import InputError
-from krl.project_settings import baseline_place, read_settings, settings_of
+from krl.project_settings import read_settings, settings_of
 
 PROGRAM = "DEF A()\nINT N\nN = 1.5\nEXIT\n$OUT[N] = TRUE\nEND\n"
 

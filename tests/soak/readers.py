@@ -28,10 +28,11 @@ from grammar.syntax.source import Source
 from interp.bytecode.image.reader import read_image
 from interp.bytecode.image.writer import write_image
 from interp.bytecode.instruction_set.table import MAGIC
+from krl.baseline_file import read_baseline
 from krl.commands.lsp import Bounded
 from krl.errors import InputError, one_line
 from krl.language_server.server import server
-from krl.project_settings import read_baseline, read_settings
+from krl.project_settings import read_settings
 from support.files import archives
 from support.files.decode import decode
 from tests.interp.bytecode.damaged_images import run_on_machines, sealed

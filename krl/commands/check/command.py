@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from krl.baseline_file import baseline_place, read_baseline
 from krl.commands.check.output import Format, sum_up, write
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors
 from krl.extras import expected_extras
-from krl.project_settings import Settings, baseline_place, read_baseline, read_settings, settings_of
+from krl.project_settings import Settings, read_settings, settings_of
 from krl.terminal.options import JobsOption
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
