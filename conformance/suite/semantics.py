@@ -108,6 +108,7 @@ _SOURCES = """\
 | T43 | wxredian.com/art?id=437c338c679012684d4d9d393ecc8696: analogue outputs; excerpt only |
 | T44 | m.elecfans.com/article/2097891: analogue outputs, from a manual; excerpt only |
 | T45, T46 | m.elecfans.com/article/2063709: structures; asorrir.com/d/2369151.html: validity |
+| T47 | husay.cn/a/202201/272043.html: block coincidence, running backwards; excerpt only |
 | F1 to F4 | robot-forum.com on blending (14422), triggers (34556), axes (24428), REAL (35090) |
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
 | F6 | robot-forum.com on velocities in T1 (43227) |
