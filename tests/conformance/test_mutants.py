@@ -421,11 +421,11 @@ def test_a_search_may_go_another_way(reached: int, runs: int, changed: str, fate
 
 def test_a_search_is_tried_on_all_cases() -> None:
     """A sample does not tell that nothing seen is another; what decides is no search."""
-    module = "interp.robot.planning.profile"
+    module = "interp.robot.path.speed_profile"
     cases = [_case(name) for name in ("motion/acc_cp", "motion/lin_speed", "motion/lin_end_pose")]
     counts = []
     beyond = "position >= self.length", "position < self.length"
-    for was, now in (("dt * jerk", "dt / jerk"), beyond):
+    for was, now in (("reached - position", "reached + position"), beyond):
         mutant = _mutant(module, "SpeedProfile.time_at", was, now)
         reaches = [Reach(case, {module: frozenset({mutant.line})}, 1) for case in cases]
         is_search = bool(search_reason(mutant))

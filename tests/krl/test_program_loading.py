@@ -181,5 +181,5 @@ def test_a_program_that_was_loaded_before_runs_as_it_did(
         assert 0 == main(["run", *words])
         traces.append((trace.read_bytes(), capsys.readouterr()))
         monkeypatch.setattr("interp.program.load.load", None)
-        monkeypatch.setattr("interp.bytecode.compiler.compile_program", None)
+        monkeypatch.setattr("interp.bytecode.compiler.project.compile_program", None)
     assert traces[0] == traces[1]

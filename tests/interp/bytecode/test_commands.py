@@ -60,7 +60,7 @@ def test_what_was_compiled_is_not_compiled_again(
     assert 1 == main(["compile", str(source)])
     told, made = capsys.readouterr(), image.read_bytes()
     with monkeypatch.context() as patched:
-        patched.delattr("interp.bytecode.compiler.compile_program")
+        patched.delattr("interp.bytecode.compiler.project.compile_program")
         assert 1 == main(["compile", str(source)])
     assert (told, made) == (capsys.readouterr(), image.read_bytes())
     source.write_text("DEF A()\nINT I\nI=1\nEND\n" + ";\n" * 5_000, encoding="utf-8")
