@@ -119,7 +119,8 @@ def _turning_share(curve: Curve, share: float) -> float:
     (travel,), _, _ = curve.rates(np.ones(1))
     machine = curve.arm.machine
     reach = np.array([axis.approximation for axis in machine.every_axis])
-    return share / float((np.abs(travel) / reach).max())
+    moved = travel.nonzero()  # an external axis at rest often has the distance zero
+    return float((share * reach[moved] / np.abs(travel[moved])).min(initial=_HALF))
 
 
 def _way_share(curve: Curve, distance: float, *, at_end: bool) -> float:

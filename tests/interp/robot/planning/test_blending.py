@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -20,10 +21,11 @@ from interp.robot.planning.blending import blend_of
 from interp.robot.planning.tracks import Tracks
 from interp.values.faults import Fault
 from interp.values.poses import Pose
+from tests.interp.robot.conftest import Driver
 
 if TYPE_CHECKING:
+    from interp.robot.kinematics.machine_data import MachineData
     from interp.robot.planning.timeline import Section
-    from tests.interp.robot.conftest import Driver
 
 START = {"A1": 0.0, "A2": -90.0, "A3": 100.0, "A4": 0.0, "A5": 60.0, "A6": 0.0}
 FIRST = {"X": 500.0, "Y": 200.0, "Z": 600.0, "A": 0.0, "B": 160.0, "C": 0.0}
@@ -138,6 +140,20 @@ def test_ptp_blends_in_the_space_of_axes(driver: Driver) -> None:
     assert (np.diff(axes, axis=0) > -1e-12).all()
     driver.play()
     driver.check_limits()
+
+
+@pytest.mark.parametrize(("target", "is_blended"), [({"A1": 60.0}, True), ({"E1": 100.0}, False)])
+def test_an_axis_that_may_not_leave_its_point_matters_if_it_moves(
+    machine: MachineData, target: Mapping[str, float], is_blended: bool
+) -> None:
+    """Machine data often have the distance zero for external axes [BLD-03]."""
+    slide = replace(machine.externals[0], approximation=0.0)
+    driver = Driver(replace(machine, externals=(slide,)))
+    values = {"approximation": Approximation(cdis=30.0, cptp=50), "velocity": 0.5}
+    driver.move("PTP", FIRST)
+    driver.move("LIN", CORNER, criteria=("C_DIS", "C_PTP"), **values)
+    driver.move("PTP", target, **values)
+    assert is_blended == any(leg.section.following for leg in driver.arm.path())
 
 
 @pytest.mark.parametrize("kinds", [("PTP", "LIN"), ("LIN", "PTP")])
