@@ -120,7 +120,7 @@ def _names(value: ast.Aggregate) -> set[str]:
 
 
 def _of_motions(source: Source, tree: ast.Module) -> Iterator[Doubt]:
-    """Yield what motions in a row rest on: blends of two kinds, relative ones behind a blend."""
+    """Yield what motions in a row rest on: mixed blends, targets behind them, triggers before."""
     for node in walk(tree):
         if not isinstance(node, ast.SplineBlock):
             for body in bodies(node):
@@ -130,6 +130,7 @@ def _of_motions(source: Source, tree: ast.Module) -> Iterator[Doubt]:
 def _of_row(source: Source, body: Iterable[ast.Node]) -> Iterator[Doubt]:
     before: ast.Motion | ast.SplineBlock | None = None
     is_relative = False
+    waiting: list[int] = []
     for node in body:
         line = source.place(node.span[0])[0]
         if isinstance(node, ast.Motion | ast.SplineBlock):
@@ -142,8 +143,12 @@ def _of_row(source: Source, body: Iterable[ast.Node]) -> Iterator[Doubt]:
                 yield Doubt(source.path, line, "MOT-14.b", _PLACES, behind=False)
             else:
                 is_relative = False
-            before = node
-        elif not isinstance(node, ast.Trigger):
+            if isinstance(node, ast.SplineBlock) or node.kind.startswith("S"):
+                yield from (Doubt(source.path, trigger, "TRG-10.e") for trigger in waiting)
+            before, waiting = node, []
+        elif isinstance(node, ast.Trigger):
+            waiting += [line] if node.place_kind == "DISTANCE" else []
+        else:
             text = source.text[slice(*node.span)]
             if before is not None and _POSITION.search(text) and isinstance(node, ast.Assignment):
                 yield Doubt(source.path, line, "ADV-07.b", _VALUES, behind=False)

@@ -42,6 +42,8 @@ FEATURES: Final[Mapping[str, tuple[str, ...]]] = {
 }
 #: Paths on which a place can be given in mm.
 _CP: Final = ("lin", "spline", "rel")
+#: Paths to which only recollection lets a trigger with DISTANCE refer.
+_SPLINES: Final = ("spline", "spline_blend", "ptp_spline", "slin", "scirc")
 _BESIDE: Final = (
     "DEF BESIDE()\n  LOOP\n    IF $OUT[1] THEN\n"
     "      $OUT[40] = TRUE ;> out 40 TRUE after out 1 [SUB-03.b]\n    ENDIF\n"
@@ -148,6 +150,7 @@ def _main(name: str, row: Row) -> list[str]:
     """Return the lines of the routines of a case."""
     is_left = row["act"].startswith("resume")
     blends = row["path"].endswith("_blend")
+    doubt = "TRG-10.e" if row["path"] in _SPLINES else ""
     motions, behind = (_STATEMENTS[what][row[what]].splitlines() for what in ("path", "behind"))
     if is_left:
         motions = [_bare(text) for text in motions if not text.startswith(";")]
@@ -170,7 +173,10 @@ def _main(name: str, row: Row) -> list[str]:
             is_left=is_left,
             is_cp=row["path"] in _CP,
             never=f"never [{_never(row)}]",
-            moment="apex 2 [TRG-02]" if blends else "end 2 [TRG-01]",
+            never_there=f"never [{doubt or _never(row)}]",
+            start=doubt or "TRG-01",
+            call=doubt or "TRG-05",
+            moment=f"apex 2 [{doubt or 'TRG-02'}]" if blends else f"end 2 [{doubt or 'TRG-01'}]",
             motions=motions,
             after=behind,
             statements=_STATEMENTS,

@@ -10,6 +10,7 @@ from conformance.suite.case import Case
 from conformance.suite.registry import registry
 
 GOOD = ";@ rule: CTL-01\n;@ title: a fact\n;@ phase: run\nDEF good()\n  HALT ;> runs 1\nEND\n"
+_TRIGGER = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO $FLAG[1]=TRUE"
 
 
 def citing(rule: str, expected: str) -> str:
@@ -134,6 +135,8 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
                 ("$BASE = {X 1, Y 2, Z 3, A 4, B 5, C 6}\n  HALT ;> runs 1", ""),
                 ("SLIN {X 1} C_SPL ;> apex\n  SPTP {A1 1}", "good.src:5: only BLD-12 allows it"),
                 ("SLIN {X 1} C_SPL ;> apex\n  WAIT SEC 0\n  SPTP {A1 1}", ""),
+                (f"{_TRIGGER}\n  SLIN {{X 1}} ;> runs 1", "good.src:5: only TRG-10.e allows it"),
+                (f"{_TRIGGER}\n  LIN {{X 1}} ;> runs 1", ""),
                 ("LIN {X 1} C_DIS\n  LIN_REL {X 1} ;> pose 1 2 3", "good.src:6: only MOT-14.b"),
                 ("LIN {X 1} C_DIS\n  LIN_REL {X 1}\n  LIN {Y 1} ;> pose 1 2 3", "only MOT-14.b"),
                 ("LIN {X 1} C_DIS\n  LIN_REL {X 1}\n  LIN {X 1, Y 2, Z 3} ;> pose 1 2 3", ""),
