@@ -32,7 +32,7 @@ def record_of(
         "rounds": ledger.rounds,
         "finished": is_finished,
         "version": metadata.version("krl-workbench"),
-        "rules": sum(not rule.is_lexer for rule in ledger.grammar.rules),
+        "rules": len(ledger.grammar.parser_rules),
         "seconds": round(seconds, 1),
         "generated": datetime.now(UTC).isoformat(timespec="seconds"),
         "grammar_sha256": ledger.grammar.sha256,

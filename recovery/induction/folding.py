@@ -60,8 +60,4 @@ def folds_of(view: GrammarView) -> Iterator[InferredStep]:
 
 def size(grammar: Grammar) -> int:
     """Return how many symbols the parser rules of a grammar write."""
-    return sum(
-        len([e for a in rule.alternatives for e in walk(a)]) + len(rule.alternatives)
-        for rule in grammar.rules
-        if not rule.is_lexer
-    )
+    return sum(len([*walk(rule), *rule.alternatives]) for rule in grammar.parser_rules)

@@ -116,8 +116,8 @@ def _folded(view: GrammarView, word: str, places: Sequence[tuple[str, int]]) -> 
     edits: list[Edit] = []
     if word == view.kind and view.kind not in view.grammar.by_name:
         text = "\n    | ".join(sorted(words | view.rules.type_words))
-        last = [r.name for r in view.grammar.rules if not r.is_lexer][-1]
-        edits.append(AddRule(last, f"{view.kind}\n    : {text}\n    ;"))
+        last = view.grammar.parser_rules[-1]
+        edits.append(AddRule(last.name, f"{view.kind}\n    : {text}\n    ;"))
     elif word == view.kind:
         known = view.profile.vocabulary.words_of(view.kind)
         edits += (AddAlternative(view.kind, w) for w in sorted(words - known))

@@ -18,8 +18,8 @@ from recovery.tuning import RULE_SYMBOLS
 
 def tails(view: GrammarView) -> Iterator[InferredStep]:
     """Yield one form for what follows a declared name, if alternatives of a rule differ in it."""
-    for rule in view.grammar.rules:
-        if rule.is_lexer or rule.name in view.rules.recursive:
+    for rule in view.grammar.parser_rules:
+        if rule.name in view.rules.recursive:
             continue
         found: list[tuple[int, int, Sequence[Element]]] = []
         for number in range(1, len(rule.alternatives) + 1):
@@ -70,10 +70,10 @@ def brackets(view: GrammarView) -> Iterator[InferredStep]:
 
 def modifiers(view: GrammarView) -> Iterator[InferredStep]:
     """Yield a word that is optional in front of two kinds of line for further kinds like them."""
-    for rule in view.grammar.rules:
+    for rule in view.grammar.parser_rules:
         found: dict[str, list[int]] = defaultdict(list)
         plain = []
-        for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+        for number in range(1, 1 + len(rule.alternatives)):
             first, *others = view.line(rule.name, number) or (None,)
             if isinstance(first, Repeat) and first.operator == "?" and _declares(view, others):
                 found[rule.source_of(first.item)].append(number)
@@ -88,9 +88,9 @@ def modifiers(view: GrammarView) -> Iterator[InferredStep]:
 
 def undeclared(view: GrammarView) -> Iterator[InferredStep]:
     """Yield the prefix between a word and a type in front of types of a kind without that word."""
-    for rule in view.grammar.rules:
+    for rule in view.grammar.parser_rules:
         found = []
-        for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+        for number in range(1, 1 + len(rule.alternatives)):
             line = view.line(rule.name, number)
             ahead = list(takewhile(lambda e: not _is_kind(view, e), line))
             sets = [view.words(e.item if isinstance(e, Repeat) else e) for e in ahead]

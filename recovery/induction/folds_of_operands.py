@@ -107,8 +107,8 @@ def variables(view: GrammarView) -> Iterator[InferredStep]:
     values = {lexer.names[k] for k in kinds}.union(*(read[k] for k in kinds)) - of_names
     values -= {lexer.name, *view.reserved}
     reading = view.rules.including(variable)
-    for rule in view.grammar.rules:
-        if rule.is_lexer or rule.name in view.rules.recursive or rule.name in values:
+    for rule in view.grammar.parser_rules:
+        if rule.name in view.rules.recursive or rule.name in values:
             continue
         heads = {view.head(alternative.elements) for alternative in rule.alternatives}
         is_statement = len(heads) == 1 and not heads & {"", view.kind}
@@ -130,8 +130,8 @@ def variables(view: GrammarView) -> Iterator[InferredStep]:
 def any_operands(view: GrammarView) -> Iterator[InferredStep]:
     """Yield any operand in place of a choice of variables and values."""
     widest = view.rules.widest or ""
-    for rule in view.grammar.rules:
-        if rule.is_lexer or rule.name in view.rules.recursive:
+    for rule in view.grammar.parser_rules:
+        if rule.name in view.rules.recursive:
             continue
         edits: list[Edit] = []
         if _are_variables_and_values(view, rule.alternatives):

@@ -73,12 +73,9 @@ class GrammarView:
         return sorted(self._families(), key=lambda f: (-len(f[2]), f[:2]))
 
     def _families(self) -> Iterator[tuple[str, str, list[int]]]:
-        for rule in self.grammar.rules:
-            if (
-                rule.is_lexer
-                or rule.name in self.rules.recursive
-                or all(len(a.elements) == 1 for a in rule.alternatives)
-            ):
+        for rule in self.grammar.parser_rules:
+            is_choice = all(len(a.elements) == 1 for a in rule.alternatives)
+            if is_choice or rule.name in self.rules.recursive:
                 continue
             found: dict[str, list[int]] = defaultdict(list)
             for number in range(1, len(rule.alternatives) + 1):
@@ -89,8 +86,8 @@ class GrammarView:
 
     def lines(self) -> Iterator[tuple[Rule, int, Sequence[Element]]]:
         """Yield the alternatives that are one line of several elements: rule, number, elements."""
-        for rule in self.grammar.rules:
-            for number in range(1, 1 + (0 if rule.is_lexer else len(rule.alternatives))):
+        for rule in self.grammar.parser_rules:
+            for number in range(1, 1 + len(rule.alternatives)):
                 elements = self.line(rule.name, number)
                 if len(elements) > 1:
                     yield rule, number, elements

@@ -42,7 +42,7 @@ class InducedLedger:
             {
                 "shown": asdict(done.shown),
                 "held": asdict(done.held),
-                "rules": sum(not rule.is_lexer for rule in before.rules),
+                "rules": len(before.parser_rules),
                 "taken": [
                     {
                         "id": construct.id,

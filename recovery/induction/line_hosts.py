@@ -34,8 +34,8 @@ class LineHosts:
     def _alternatives(self) -> Iterator[tuple[str, int, tuple[Element, ...]]]:
         """Alternatives that may be a line: rule, number, and the elements of the first line."""
         end = self.at.profile.line_end
-        for rule in self.at.grammar.rules:
-            if rule.is_lexer or rule.name in self.at.rules.recursive:
+        for rule in self.at.grammar.parser_rules:
+            if rule.name in self.at.rules.recursive:
                 continue
             is_choice = len(rule.alternatives) > 1
             if is_choice and self.at.profile.vocabulary.is_set_of_words(rule.name):
@@ -56,8 +56,8 @@ class LineHosts:
     def _inner_lines(self) -> Iterator[tuple[str, Address, tuple[Element, ...]]]:
         """Yield the lines within blocks and at their end: rule, first index, elements."""
         end = self.at.profile.line_end
-        for rule in self.at.grammar.rules:
-            for address, sequence in () if rule.is_lexer else sequences(rule):
+        for rule in self.at.grammar.parser_rules:
+            for address, sequence in sequences(rule):
                 elements = sequence.elements
                 ends = [i for i, e in enumerate(elements) if rule.source_of(e) == end]
                 starts = [0] * (len(address) > 1) + [i + 1 for i in ends]
@@ -109,8 +109,8 @@ class LineHosts:
         """Rules that are all of a line but its end, in a loop or as they gather alternatives."""
         ends = {*self.at.profile.line_ends, self.at.lexer.line_end}
         found: set[str] = set()
-        for rule in self.at.grammar.rules:
-            for _, sequence in () if rule.is_lexer else sequences(rule):
+        for rule in self.at.grammar.parser_rules:
+            for _, sequence in sequences(rule):
                 called = [
                     inner.name if isinstance(inner, Reference) else ""
                     for e in sequence.elements
@@ -133,8 +133,8 @@ class LineHosts:
         end = self.at.profile.line_end
         return [
             (rule.name, (*address, place), element.item.alternatives[0].elements[0], text)
-            for rule in self.at.grammar.rules
-            for address, sequence in (() if rule.is_lexer else sequences(rule))
+            for rule in self.at.grammar.parser_rules
+            for address, sequence in sequences(rule)
             for place, element in enumerate(sequence.elements, 1)
             if isinstance(element, Repeat) and isinstance(element.item, Group)
             if element.operator != "?" and len(element.item.alternatives) == 1
@@ -147,8 +147,8 @@ class LineHosts:
     def written_out(self) -> frozenset[str]:
         """Rules that are all of a line but its end in a choice that no rule of its own gathers."""
         found = set()
-        for rule in self.at.grammar.rules:
-            for address, sequence in () if rule.is_lexer else sequences(rule):
+        for rule in self.at.grammar.parser_rules:
+            for address, sequence in sequences(rule):
                 first, *others = sequence.elements or (None,)
                 ends = [rule.source_of(e) for e in others]
                 if len(address) > 1 and ends == [self.at.profile.line_end]:

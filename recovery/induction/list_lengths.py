@@ -30,11 +30,10 @@ def bounded_lists(
         tree = parser.parse(text)
         if isinstance(tree, Tree):
             coverage.add(tree)
-    for rule in grammar.rules:
+    for rule in grammar.parser_rules:
         lengths = _lengths(rule, coverage)
         known = start.by_name[rule.name].text if rule.name in start.by_name else ""
-        places = () if rule.is_lexer else reversed([*sequences(rule)])  # the last first: they stay
-        for address, sequence in places:
+        for address, sequence in reversed([*sequences(rule)]):  # the last first: they stay
             for place, element in reversed([*enumerate(sequence.elements, 1)]):
                 source = rule.source_of(element)
                 rounds = lengths[source]
@@ -51,7 +50,7 @@ def bounded_lists(
 def _lengths(rule: Rule, coverage: GrammarCoverage) -> dict[str, Counter[int]]:
     """Return the numbers of items after the first one, by repeated element, over a whole rule."""
     found: dict[str, Counter[int]] = defaultdict(Counter)
-    for address, sequence in () if rule.is_lexer else sequences(rule):
+    for address, sequence in sequences(rule):
         for place, element in enumerate(sequence.elements, 1):
             found[rule.source_of(element)] += coverage.rounds[rule.name, (*address, place)]
     return found

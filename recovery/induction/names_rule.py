@@ -70,14 +70,13 @@ def _with_rule(
 ) -> AcceptedStep:
     """Return a step that introduces a rule of tokens in place of all elements that are one."""
     edits: list[Edit] = []
-    rules = [rule for rule in grammar.rules if not rule.is_lexer]
-    for rule in rules:
+    for rule in grammar.parser_rules:
         for address, sequence in sequences(rule):
             for place, element in enumerate(sequence.elements, 1):
                 often = element.operator if isinstance(element, Repeat) else ""
                 if is_one(element.item if isinstance(element, Repeat) else element):
                     edits.append(Replace(rule.name, (*address, place), f"{name}{often}"))
     text = "\n    | ".join(tokens)
-    added = AddRule(rules[-1].name, f"{name}\n    : {text}\n    ;")
+    added = AddRule(grammar.parser_rules[-1].name, f"{name}\n    : {text}\n    ;")
     title = f"{name}s are a rule of their own"
     return AcceptedStep(title, (added, *edits))

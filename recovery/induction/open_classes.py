@@ -43,8 +43,8 @@ def is_open(lexer: Lexer, lines: CorpusLines) -> bool:
 def open_choices(view: GrammarView) -> Iterator[InferredStep]:
     """Yield any word beside each choice of words of lines; a word between operands says more."""
     found: dict[frozenset[str], list[Replace]] = defaultdict(list)
-    for rule in view.grammar.rules:
-        is_line = not rule.is_lexer and rule.name not in view.rules.recursive
+    for rule in view.grammar.parser_rules:
+        is_line = rule.name not in view.rules.recursive
         for address, sequence in sequences(rule) if is_line else ():
             for place, element in enumerate(sequence.elements, 1):
                 often = element.operator if isinstance(element, Repeat) else ""
