@@ -42,9 +42,10 @@ _SPACES: Final = {"PTP": "older", "LIN": "older", "CIRC": "older", "SPTP": "axes
 
 @dataclass(frozen=True, slots=True)
 class Doubt:
-    """A line that rests on a clause; ``kinds`` are the expectations of it that do, empty: all.
+    """A line that rests on a clause.
 
-    With ``behind`` the next line about which something is said does so, if nothing is of this.
+    ``kinds`` are the expectations there that do, all if it is empty. With ``behind`` they are those
+    at the next line about which something is said, if nothing is said about this one.
     """
 
     file: str

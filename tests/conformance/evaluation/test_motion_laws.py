@@ -14,7 +14,11 @@ from conformance.evaluation.execution import Setup, observe
 from conformance.evaluation.motion_laws import blend_speed_violations, motion_violations
 from conformance.evaluation.motions import ended, flanges_of
 from conformance.evaluation.observation import Observation
-from conformance.evaluation.place_laws import blend_violations, trigger_violations
+from conformance.evaluation.place_laws import (
+    blend_violations,
+    missing_blends,
+    trigger_violations,
+)
 from conformance.evaluation.spline_laws import spline_violations
 from conformance.runner import run_case
 from conformance.suite.case import Case, read_case
@@ -126,6 +130,7 @@ def broken(run: Observation) -> list[tuple[str, int]]:
     found = (
         *motion_violations(run, motions),
         *blend_violations(motions),
+        *missing_blends(motions),
         *blend_speed_violations(motions),
         *spline_violations(motions),
         *duration_violations(motions),
@@ -248,6 +253,19 @@ def test_a_motion_from_rest_begins_at_once() -> None:
     late = replace(path, motions=tuple((time + 1, motion) for time, motion in path.motions))
     found = [one.law for one in duration_violations(tuple(ended(replace(seen(), path=late))))]
     assert any("begins as soon as" in law for law in found)
+
+
+@pytest.mark.parametrize(
+    ("line", "size", "is_missing"), [(8, 3.0, True), (8, 0.0, False), (13, 3.0, False)]
+)
+def test_a_blend_that_is_planned_in_time_takes_place(
+    line: int, size: float, is_missing: bool
+) -> None:
+    """With a size above zero; what is a blend is none that is missing."""
+    settings = next(m.settings for _, m in seen().path.motions if m.at.line == line)  # type: ignore[union-attr]
+    near = replace(settings, approximation=Approximation(cdis=size))
+    run = with_motion(line, criteria=("C_DIS",), settings=near)
+    assert is_missing == any(missing_blends(tuple(ended(run))))
 
 
 @pytest.mark.parametrize(
