@@ -101,7 +101,8 @@ def disassemble_image(
 ) -> None:
     """Print an image as the text that `krl asm` makes it from."""
     from interp.bytecode.assembly.disassembler import disassemble
-    from interp.bytecode.image.reader import ImageError, read_image
+    from interp.bytecode.image.codec import ImageError
+    from interp.bytecode.image.reader import read_image
     from interp.bytecode.verifier.verify import VerificationError, verify
     from interp.native import AVAILABLE
 

@@ -16,8 +16,6 @@ from interp.bytecode.image.layout import SECTIONS, TABLES
 from interp.bytecode.instruction_set.table import FORMAT, MAGIC
 from interp.bytecode.program import BASIC_TYPES, Program
 
-__all__ = ["ImageError", "read_image"]
-
 
 def read_image(data: bytes) -> Program:
     """Return the program in an image; raises `ImageError`."""

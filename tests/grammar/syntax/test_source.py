@@ -95,7 +95,7 @@ def test_comments_are_where_they_say(text: str) -> None:
 
 
 def test_folds_nest() -> None:
-    """Folds come in the order of their first lines, each with its level."""
+    """Folds come in the order of their first lines."""
     assert [Fold("a", 1, 6, None), Fold("b c", 2, 3, None), Fold("", 4, 5, None)] == folds(
         ";FOLD a", "; fold  b c ", " ;ENDFOLD (b)", ";FOLD", ";endfold", ";ENDFOLD"
     )

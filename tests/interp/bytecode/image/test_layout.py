@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from interp.bytecode.assembly.assembler import assemble
-from interp.bytecode.image.reader import ImageError, read_image
+from interp.bytecode.image.codec import ImageError
+from interp.bytecode.image.reader import read_image
 from interp.bytecode.image.writer import write_image
 from interp.bytecode.instruction_set.table import FORMAT
 
