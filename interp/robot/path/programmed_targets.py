@@ -7,6 +7,7 @@ add to it, and omitted components keep its values [MOT-14, MOT-16].
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -143,15 +144,19 @@ def check_numbers(motion: Motion) -> None:
     Numbers with a further requirement are checked where they are used.
     """
     settings, apo = motion.settings, motion.settings.approximation
-    numbers = [*settings.axis_velocity, *settings.axis_acceleration, *settings.axis_jerk]
-    numbers += (apo.cdis, apo.cptp, apo.cvel, apo.cori)
     every: tuple[Motion | SplinePart, ...] = (motion, *motion.parts)
-    for one in every:
-        numbers += (place.position for place in (*one.places, *one.stop_places))
-        numbers += (*one.target.values(), *(one.auxiliary or {}).values())
-    if not math.isfinite(sum(numbers)):
-        text = "a number of the motion is not finite"
-        raise Fault("invalid", text, number=1422, rules=("MSG-11",))
+    places = [place for one in every for place in (*one.places, *one.stop_places)]
+    targets = [target for one in every for target in (one.target, one.auxiliary or {})]
+    percent = (*settings.axis_velocity, *settings.axis_acceleration, *settings.axis_jerk)
+    numbers: Mapping[str, Iterable[float]] = {
+        "the speed, acceleration or jerk of an axis": percent,
+        "a part of $APO": (apo.cdis, apo.cptp, apo.cvel, apo.cori),
+        "a place on the path": (place.position for place in places),
+        "a component of the target": (value for target in targets for value in target.values()),
+    }
+    for name, values in numbers.items():
+        if not math.isfinite(sum(values)):
+            raise Fault("invalid", f"{name} is not a finite number", number=1422, rules=("MSG-11",))
 
 
 def _bits(target: Target, name: str) -> int | None:
