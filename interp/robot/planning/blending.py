@@ -124,7 +124,7 @@ class _Corner:
         if self.common is None:
             check_path(self.tracks.machine.every_axis, curve.axes(curve.grid))
         else:
-            (start,) = axes.axes(np.zeros(1))
+            (start,) = one.axes(np.array([1.0 - transition.before]))
             pose_path = self._pose_path(self.common, transition)
             first, second = (each.others for each in self.common)
             others = BlendedAxes(first, second, transition)
