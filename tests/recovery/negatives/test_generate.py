@@ -95,7 +95,9 @@ nothing stands outside of routines and data lists
 SWITCH is followed by its first CASE
 ELSE stands once, in an IF
 a predefined type is no operand"""
-    assert set() == set(wanted.splitlines()) - reasons.keys()
+    # as many as an inference draws: of 5,000 the rarest are a few, and how many is chance
+    often = Counter(one.reason for one in generate(own_programs(), count=10_000, seed=1))
+    assert [] == [reason for reason in wanted.splitlines() if often[reason] < 3]
 
 
 def test_every_row_of_the_table_gives_a_reason(negatives: tuple[Negative, ...]) -> None:
