@@ -12,6 +12,8 @@ import pytest
 pytest.importorskip("lsprotocol")
 
 from grammar.check.project.batch import CheckOptions, check_paths
+from grammar.diagnostics.diagnostic import Region
+from grammar.syntax.source import Source
 from krl.cli import main
 from krl.language_server.calls import argument_hints, signature_at
 from krl.language_server.hover import hover
@@ -21,6 +23,7 @@ from krl.language_server.names import (
     places,
     renaming,
 )
+from krl.language_server.protocol import characters, range_of
 from krl.language_server.workspace import OpenProject
 
 PROGRAM = """DEF CELL()
@@ -416,3 +419,15 @@ def test_hover_over_a_word_of_two_statements_begins_with_its_own(project: OpenPr
     said = hover(project, looked, looked.source.text.index("FOR"))
     assert said is not None
     assert "WAIT FOR" not in said[0].split("**")[2]
+
+
+@pytest.mark.parametrize("line", ["HALT ; all", "HALT ; ä", "HALT ; 𝄞 and 𝄞𝄞"])
+def test_columns_are_code_units(line: str) -> None:
+    """An editor counts a character beyond the basic plane twice; its columns lead back to ours."""
+    source = Source(line, "a.src")
+    units = [1 + (character > "\uffff") for character in line]
+    for place in range(len(line) + 1):
+        found = range_of(source, Region(1, place + 1, 1, len(line) + 1))
+        wanted = (sum(units[:place]), sum(units))
+        assert wanted == (found.start.character, found.end.character)
+        assert place == characters(line, found.start.character)
