@@ -16,6 +16,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from conformance.evaluation.case_result import CaseResult
+from conformance.evaluation.case_run import run_case
 from conformance.evaluation.execution import (
     MakeExecutor,
     MakeRobot,
@@ -26,7 +28,6 @@ from conformance.evaluation.execution import (
 )
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
-from conformance.runner import CaseResult, run_case
 from conformance.suite.case import CASES, Case, find_cases, selected
 
 __all__ = ["MakeExecutor", "MakeRobot", "NotConforming", "Proof", "prove"]

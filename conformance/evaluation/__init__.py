@@ -1,1 +1,1 @@
-"""The evaluation of cases: observations against expectations, and comparison of executors."""
+"""The evaluation of cases: run, observed, and compared with expectations and other executors."""

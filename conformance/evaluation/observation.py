@@ -1,8 +1,8 @@
 """Observations of a case: findings, or a trace and a path.
 
 An observation comes from our executors (`conformance.evaluation.execution`) or from a recording of
-a controller (`conformance.recording`), and is evaluated in the same way. Values are in the form of
-the trace, that is as JSON (`interp.values.json_form`).
+a controller (`conformance.exchange.recording`), and is evaluated in the same way. Values are in the
+form of the trace, that is as JSON (`interp.values.json_form`).
 """
 
 from __future__ import annotations

@@ -7,9 +7,9 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, get_args
 
+from conformance.evaluation.case_run import run_case
 from conformance.evaluation.execution import Setup
 from conformance.evaluation.verdicts import KnownFailures
-from conformance.runner import run_case
 from conformance.sensitivity.mutants import Mutant
 from conformance.sensitivity.mutated_code import OF_CASES
 from conformance.sensitivity.planted_faults import Fault

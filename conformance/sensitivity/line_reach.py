@@ -15,10 +15,10 @@ from typing import Any, Final
 
 import numpy as np
 
+from conformance.evaluation.case_run import run_case
 from conformance.evaluation.execution import Setup
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
-from conformance.runner import run_case
 from conformance.sensitivity.code_exchange import exchanged, load, other_code
 from conformance.sensitivity.mutated_code import modules, tree_of
 from conformance.sensitivity.mutation_operators import span

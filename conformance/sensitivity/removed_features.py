@@ -17,8 +17,8 @@ from itertools import takewhile
 from typing import Any, Final, get_args
 
 from conformance.differential.construct_coverage import language
+from conformance.evaluation.case_run import run_case
 from conformance.evaluation.execution import Setup
-from conformance.runner import run_case
 from conformance.suite.case import Case
 from grammar.semantics.predefined import System
 from grammar.semantics.types import BOOL, INT, REAL, Array, Type

@@ -21,10 +21,11 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Any, Final, Generic, Literal, NoReturn, TypeVar
 
+from conformance.evaluation.case_result import Result
+from conformance.evaluation.case_run import observed_within, run_case
 from conformance.evaluation.execution import Setup, missing, observe
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
-from conformance.runner import Result, observed_within, run_case
 from conformance.sensitivity.case_selection import Candidates, SeededFault, candidates, uses_of
 from conformance.sensitivity.code_exchange import InvalidMutant, load
 from conformance.sensitivity.equivalents import equivalent, search_reason

@@ -28,6 +28,25 @@ from support.files.untrusted import read_text
 
 #: The folder of the cases of this project.
 CASES: Final = Path(__file__).parents[1] / "cases"
+#: The suites, in the order in which they are shown.
+SUITES: Final = (
+    "syntax",
+    "types",
+    "control",
+    "data",
+    "advance",
+    "blending",
+    "motion",
+    "posture",
+    "spline",
+    "trigger",
+    "interrupt",
+    "io",
+    "submit",
+    "message",
+    "interaction",
+    "program",
+)
 #: The suffixes of program files.
 ENDINGS: Final = (".src", ".sub", ".dat")
 _KEYS: Final = (

@@ -4,11 +4,10 @@ from random import Random
 
 import pytest
 
+from conformance.evaluation.case_run import run_case
 from conformance.evaluation.execution import Setup, missing
 from conformance.evaluation.verdicts import KnownFailures
-from conformance.lint import SUITES
-from conformance.runner import run_case
-from conformance.suite.case import Case
+from conformance.suite.case import SUITES, Case
 
 ARM = Setup("tree", "kinematic")
 MACHINE = Setup("vm" if missing(Setup("native", "none")) else "native", "none")

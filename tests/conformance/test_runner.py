@@ -11,11 +11,13 @@ from typing import Any
 import pytest
 
 from conformance import runner
+from conformance.evaluation import case_run
+from conformance.evaluation.case_run import repeated, run_case
 from conformance.evaluation.execution import Setup, missing, observe
 from conformance.evaluation.observation import Event, Observation
 from conformance.evaluation.trace_comparison import first_divergence
 from conformance.evaluation.verdicts import Known, KnownFailures
-from conformance.runner import Stopped, repeated, run_case, run_cases
+from conformance.runner import Stopped, run_cases
 from conformance.suite.case import Case, read_case
 
 TREE, VM = Setup("tree", "none"), Setup("vm", "none")
@@ -167,7 +169,7 @@ def test_executor_that_waits_for_ever_is_a_failed_case(
     make: MakeCase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It needs no processor for that."""
-    monkeypatch.setattr(runner, "MOST_LASTING", 0.05)
+    monkeypatch.setattr(case_run, "MOST_LASTING", 0.05)
 
     def see(case: Case, setup: Setup) -> Observation:
         sleep(600)
@@ -181,7 +183,7 @@ def test_case_that_does_not_end_is_tried_once(
     make: MakeCase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Neither on the executors after that, nor once more."""
-    monkeypatch.setattr(runner, "MOST_COMPUTING", 0.05)
+    monkeypatch.setattr(case_run, "MOST_COMPUTING", 0.05)
     begun: list[str] = []
 
     def see(_case: Case, setup: Setup) -> Observation:

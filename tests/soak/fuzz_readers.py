@@ -22,7 +22,7 @@ from tests.soak.given import REPOSITORY
 
 _LOOKED_AT = (
     *("grammar", "interp.bytecode", "krl.language_server", "krl.project_settings"),
-    *("conformance.recording", "support.files", "tomllib", "zipfile"),
+    *("conformance.exchange.recording", "support.files", "tomllib", "zipfile"),
 )
 # Atheris cannot instrument what the finder of an editable install loads, and says nothing: let the
 # finder of folders, which finds the same files, come first.

@@ -19,7 +19,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from conformance import runner
+from conformance.evaluation import case_run
 from support.files import archives, untrusted
 from tests.soak.entries import ENTRIES
 from tests.soak.pieces import KINDS
@@ -208,7 +208,7 @@ def _limits() -> Iterator[tuple[str, str]]:
     yield "nesting of JSON and TOML", "what Python reads without a deeper stack, some hundreds"
     yield "a run", "`--max-time` of virtual time, and a budget of statements that pass none"
     yield "a trace", "`--max-trace`; the run goes on"
-    limits = f"{runner.MOST_COMPUTING:.0f} s of computing, {runner.MOST_LASTING:.0f} s"
+    limits = f"{case_run.MOST_COMPUTING:.0f} s of computing, {case_run.MOST_LASTING:.0f} s"
     yield "a conformance case, on one executor and robot", f"{limits}; not on Windows"
     yield "a step of a nightly run", "its share of `--minutes`"
 

@@ -16,7 +16,7 @@ from unittest.mock import patch
 
 from pygls.exceptions import JsonRpcInvalidParams
 
-from conformance.recording import Recording, RecordingError
+from conformance.exchange.recording import Recording, RecordingError
 from grammar.check.project.project_check import read_source
 from grammar.notation import g4
 from grammar.notation.krl_grammar import krl_grammar

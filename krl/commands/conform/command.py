@@ -21,7 +21,7 @@ from krl.terminal.text_table import figures
 from support.parallel.termination import on_termination
 
 if TYPE_CHECKING:
-    from conformance.runner import CaseResult
+    from conformance.evaluation.case_result import CaseResult
     from conformance.suite.case import Case
 
 _SHOWN = 20
@@ -157,7 +157,7 @@ class _Outputs:
 
         The record is written last, because it says that the run is complete.
         """
-        from conformance.record import record_of
+        from conformance.records.conform_record import record_of
 
         version = metadata.version("krl-workbench")
         if self.json_file is not None or self.html is not None:
@@ -169,7 +169,7 @@ class _Outputs:
                 typer.echo(one_line(f"page: {write_conformance_page(record, self.html)}"))
             write_json(record, self.json_file)
         if self.junit is not None:
-            from conformance.junit import write_junit
+            from conformance.records.junit import write_junit
 
             write_junit(results, self.junit)
 
@@ -309,7 +309,7 @@ def _print_summary(
 ) -> None:
     """Print the cases with one of the ``bad`` verdicts, then the figures."""
     from conformance.evaluation.verdicts import VERDICTS
-    from conformance.lint import coverage
+    from conformance.suite.rule_coverage import coverage
     from reports.rendering.number_format import counted
 
     failed = [one for one in results if one.verdict in bad]
@@ -346,7 +346,7 @@ def _print_failure(one: "CaseResult", bad: Collection[str]) -> None:
 
 
 def _lint(words: Iterable[str]) -> int:
-    from conformance.lint import lint
+    from conformance.linter.case_lint import lint
     from conformance.suite.case import CASES
 
     folders = [Path(word) for word in words] or [CASES]
@@ -362,7 +362,7 @@ def _lint(words: Iterable[str]) -> int:
 
 def _export(words: Sequence[str], jobs: int | None, scheduler: str | None) -> int:
     """Write the cases, their expectations, and the results of the tree interpreter."""
-    from conformance.export import write_export
+    from conformance.exchange.export import write_export
 
     if not words or not words[0].endswith(".zip"):
         raise InputError("krl conform export takes the name of an archive, FILE.zip")
@@ -383,7 +383,7 @@ def _export(words: Sequence[str], jobs: int | None, scheduler: str | None) -> in
 
 def _compare(words: Sequence[str], wanted: Sequence[str], outputs: _Outputs) -> int:
     """Print for each suite how many cases each parser accepts or rejects correctly."""
-    from conformance.parser_comparison import OWN, ParserError, compared, parsers
+    from conformance.exchange.parser_comparison import OWN, ParserError, compared, parsers
 
     if not wanted:
         raise InputError("krl conform compare takes --parser NAME=WHAT, once or several times")
@@ -416,7 +416,12 @@ def _print_comparison(results: "Sequence[CaseResult]", names: Sequence[str]) -> 
 
 def _import(words: Sequence[str], outputs: _Outputs, bad: Collection[str]) -> int:
     """Evaluate a recording: its failures, and its evidence on unconfirmed rules."""
-    from conformance.recording import Recording, RecordingError, answers, evaluate_recording
+    from conformance.exchange.recording import (
+        Recording,
+        RecordingError,
+        answers,
+        evaluate_recording,
+    )
     from conformance.suite.case import CaseError, find_cases
 
     if len(words) != 1:

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 import pytest
 
+from conformance.evaluation.case_run import run_case
 from conformance.evaluation.duration_laws import duration_violations, seconds_of
 from conformance.evaluation.execution import Setup, observe
 from conformance.evaluation.motion_laws import blend_speed_violations, motion_violations
@@ -20,7 +21,6 @@ from conformance.evaluation.place_laws import (
     trigger_violations,
 )
 from conformance.evaluation.spline_laws import spline_violations
-from conformance.runner import run_case
 from conformance.suite.case import Case, read_case
 from grammar.syntax.source import Source
 from interp.robot.arm import Approximation, Place, SplinePart

@@ -6,9 +6,9 @@
 numbers, ``machines/`` and ``profiles/`` the arm and the controllers of the cases, ``docs/`` the
 documents to which the README refers (a checkout has all of them, a wheel only the rules).
 ``reference.json`` is what the tree interpreter and the planned arm do with them, in the form of a
-recording (`conformance.recording`), so that it can be compared with one's own results and evaluated
-like them. A fault is identified by its message number; if none is known, any fault meets the
-expectation, because our names of faults are not binding.
+recording (`conformance.exchange.recording`), so that it can be compared with one's own results and
+evaluated like them. A fault is identified by its message number; if none is known, any fault meets
+the expectation, because our names of faults are not binding.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from pathlib import Path
 from typing import Any, Final
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
+from conformance.evaluation.case_result import CaseResult
 from conformance.evaluation.observation import Observation
-from conformance.recording import FORMAT
-from conformance.runner import CaseResult
+from conformance.exchange.recording import FORMAT
 from conformance.suite.case import Case
 from conformance.suite.expectations import (
     KINDS,
@@ -246,7 +246,9 @@ def write_export(path: Path, results: Sequence[CaseResult], version: str) -> Non
         "expectations.json": _json(expectations_of(cases)),
         "expectations.schema.json": _json(SCHEMA),
         "reference.json": _json(reference_of(results, version)),
-        "README.md": (Path(__file__).with_name("CASES.md")).read_text(encoding="utf-8"),
+        "README.md": resources.files("conformance")
+        .joinpath("CASES.md")
+        .read_text(encoding="utf-8"),
     }
     for case in cases:
         texts |= {f"cases/{case.name}/{one.path}": one.text for one in case.sources}
@@ -271,7 +273,7 @@ def _companions() -> Iterator[tuple[str, str]]:
     profiles = resources.files(state).joinpath("profiles")
     for name in profile_names():
         yield f"profiles/{name}.toml", profiles.joinpath(f"{name}.toml").read_text("utf-8")
-    root = Path(__file__).parents[1]
+    root = Path(__file__).parents[2]
     for name in ("LICENSE", *(f"docs/{one}.md" for one in ("trace", "io-scripts", "controller"))):
         if (root / name).is_file():
             yield name, (root / name).read_text(encoding="utf-8")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from conformance.parser_comparison import OWN, ParserError, compared, parsers
+from conformance.exchange.parser_comparison import OWN, ParserError, compared, parsers
 from conformance.suite.case import CASES, read_case
 from grammar.notation.generate import ANTLR_VERSION
 

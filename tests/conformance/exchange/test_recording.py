@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from conformance.evaluation.execution import Setup, observe
-from conformance.recording import Recording, RecordingError, answers, evaluate_recording
+from conformance.exchange.recording import Recording, RecordingError, answers, evaluate_recording
 from conformance.suite.case import Case, selected
 
 NAMES = ("io/pulse_length", "control/for_end_once", "data/round_up", "syntax/declaration_late")

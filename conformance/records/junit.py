@@ -7,7 +7,7 @@ from pathlib import Path
 
 from junitparser import Failure, JUnitXml, Skipped, TestCase, TestSuite
 
-from conformance.runner import CaseResult, Result
+from conformance.evaluation.case_result import CaseResult, Result
 from support.files.atomic_write import atomic_path
 
 

@@ -20,7 +20,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from conformance.runner import CaseResult, Result
+from conformance.evaluation.case_result import CaseResult, Result
 from conformance.suite.case import Case
 from grammar.notation.generate import GenerationError, run_antlr
 from grammar.parser.antlr_reference import refusal_by

@@ -13,13 +13,13 @@ from typing import Any, Final
 
 import numpy as np
 
+from conformance.evaluation.case_result import CaseResult, Result
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.path_geometry import drawn
 from conformance.evaluation.verdicts import VERDICTS
-from conformance.lint import SUITES, coverage
-from conformance.runner import CaseResult, Result
-from conformance.suite.case import Case
+from conformance.suite.case import SUITES, Case
 from conformance.suite.registry import registry
+from conformance.suite.rule_coverage import coverage
 from interp.robot.simulation.tracking import PathRecord
 
 #: Kinds of events of single statements; the record contains only the others.

@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 from junitparser import JUnitXml
 
+from conformance.evaluation.case_result import CaseResult
 from conformance.evaluation.verdicts import Known, KnownFailures
-from conformance.junit import write_junit
-from conformance.record import record_of
-from conformance.runner import CaseResult, run_cases
+from conformance.records.conform_record import record_of
+from conformance.records.junit import write_junit
+from conformance.runner import run_cases
 from conformance.suite.case import Case, selected
 
 NAMES = ["control/exit_for", "control/exit_while", "syntax/advance_six", "motion/lin_is_straight"]

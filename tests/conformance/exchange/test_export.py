@@ -7,8 +7,8 @@ from zipfile import ZipFile
 import pytest
 from jsonschema import Draft202012Validator
 
-from conformance.export import SCHEMA, expectations_of, write_export
-from conformance.recording import Recording, evaluate_recording
+from conformance.exchange.export import SCHEMA, expectations_of, write_export
+from conformance.exchange.recording import Recording, evaluate_recording
 from conformance.runner import run_cases
 from conformance.suite.case import Case, selected
 

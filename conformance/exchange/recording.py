@@ -16,10 +16,10 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from conformance.evaluation.case_result import CaseResult, Result
 from conformance.evaluation.evaluator import evaluate
 from conformance.evaluation.observation import Event, Finding, Observation
 from conformance.evaluation.verdicts import verdict_of
-from conformance.runner import CaseResult, Result
 from conformance.suite.case import Case
 from conformance.suite.registry import registry
 from interp.controller.state.trace import KINDS

@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 
 from conformance.evaluation.verdicts import KnownFailures
-from conformance.lint import SUITES, coverage, lint
-from conformance.suite.case import Case
+from conformance.linter.case_lint import lint
+from conformance.suite.case import SUITES, Case
 from conformance.suite.registry import registry
+from conformance.suite.rule_coverage import coverage
 
 GOOD = ";@ rule: CTL-01\n;@ title: a fact\n;@ phase: run\nDEF good()\n  HALT ;> runs 1\nEND\n"
 _TRIGGER = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO $FLAG[1]=TRUE"

@@ -1,0 +1,1 @@
+"""The linter of cases: their form, and whether they claim more than their rules say."""
