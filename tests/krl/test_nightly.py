@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from krl.cli import main
-from krl.commands import nightly
+from krl.nightly import step_runner
 
 DATE = "2026-01-02"
 _LACKED = "not run to its end: too little time, cut off after"
@@ -125,7 +125,7 @@ def test_progress_of_a_step_is_seen_on_a_terminal_only(monkeypatch: pytest.Monke
     )
     for stream, is_seen in ((Terminal(), True), (io.StringIO(), False)):
         monkeypatch.setattr(sys, "stderr", stream)
-        assert (0, "3 of 9") == nightly._watched([sys.executable, "-c", shows], 600, 1 << 40)
+        assert (0, "3 of 9") == step_runner._watched([sys.executable, "-c", shows], 600, 1 << 40)
         assert is_seen == ("\x1b[" in stream.getvalue()) == bool(stream.getvalue())
 
 
@@ -134,9 +134,9 @@ def test_results_of_the_last_night_are_at_hand(tmp_path: Path) -> None:
     old = tmp_path / "2026-01-01" / "recover" / "cache" / "results.sqlite"
     old.parent.mkdir(parents=True)
     old.write_bytes(b"kept")
-    nightly._recall(tmp_path / DATE, "recover")
+    step_runner._recall(tmp_path / DATE, "recover")
     assert b"kept" == (tmp_path / DATE / "recover/cache/results.sqlite").read_bytes()
-    nightly._recall(tmp_path / DATE, "growth")
+    step_runner._recall(tmp_path / DATE, "growth")
     assert not (tmp_path / DATE / "growth").exists()
 
 
@@ -152,7 +152,7 @@ def _step(monkeypatch: pytest.MonkeyPatch, *outcomes: tuple[int | None, str]) ->
             Path(command[-1]).write_text(record, encoding="utf-8")
         return status, last
 
-    monkeypatch.setattr(nightly, "_watched", watched)
+    monkeypatch.setattr(step_runner, "_watched", watched)
     return asked
 
 
@@ -276,8 +276,8 @@ def test_two_runs_do_not_write_into_one_folder(
 ) -> None:
     """The second one is refused, with the process of the first; that one may end in any way."""
     holds = (
-        "import sys; from pathlib import Path; from krl.commands import nightly\n"
-        f"with nightly._alone(Path({str(tmp_path)!r})): print('held', flush=True); input()"
+        "import sys; from pathlib import Path; from krl.nightly.run_lock import alone\n"
+        f"with alone(Path({str(tmp_path)!r})): print('held', flush=True); input()"
     )
     asked = _step(monkeypatch, (0, ""))
     command = [sys.executable, "-c", holds]
@@ -366,7 +366,7 @@ def test_what_was_cut_off_is_told_and_done_again(
         Path(command[-1]).write_text(json.dumps(part), encoding="utf-8")
         return None, ""
 
-    monkeypatch.setattr(nightly, "_watched", watched)
+    monkeypatch.setattr(step_runner, "_watched", watched)
     for _ in range(2):
         status, out = run(tmp_path, capsys, "conform")
         told = "while io/two on vm/none ran; 2 of 3 cases are not done"
@@ -396,7 +396,7 @@ def test_a_run_that_cannot_tell_its_results_is_red(
         raise OSError(28, "No space left on device")
 
     _step(monkeypatch, (0, ""))
-    monkeypatch.setattr("reports.conformance.claims_page.write_claims_page", broken)
+    monkeypatch.setattr("krl.nightly.report.write_claims_page", broken)
     assert 0 != run(tmp_path, capsys, "recover")[0]
     for name in ("index.html", "summary.md", "nightly.json"):
         text = (tmp_path / DATE / name).read_text(encoding="utf-8")

@@ -1,0 +1,1 @@
+"""A nightly run: its steps, each a command within limits, and the report on all of them."""
