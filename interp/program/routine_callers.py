@@ -31,7 +31,7 @@ from interp.program.load import CheckedProgram, Routine, with_main
 from interp.program.variables import is_complete, is_complete_parameter
 from interp.robot.models.stand_in import Places
 from interp.standins.completion import StandIn
-from interp.standins.derived_declarations import Signatures
+from interp.standins.default_values import DefaultValues
 
 #: The size of an array if the parameter has none.
 _LENGTH: Final = 8
@@ -74,10 +74,10 @@ def with_caller(program: CheckedProgram, name: str | None = None) -> CheckedProg
         return program
     routine, unit = found[0], program.main
     places = Places([one.source for one in program.units.values()])
-    signatures = Signatures((), lambda _name: None, {}, places)
+    defaults = DefaultValues(places)
 
     def point(type_: Structure, name: str) -> str:
-        return signatures.value(type_, name) if is_position(type_) else ""
+        return defaults.usable(type_, name) if is_position(type_) else ""
 
     made = _with_callers_added(
         program, lambda one: one.node is routine.node, _constants(program, routine), point

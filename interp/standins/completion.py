@@ -27,7 +27,9 @@ from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
 from interp.robot.models.stand_in import Places
-from interp.standins.derived_declarations import Signatures
+from interp.standins.default_values import DefaultValues
+from interp.standins.derived_declarations import DerivedDeclarations
+from interp.standins.derived_routines import derived_routine
 from interp.standins.library import Datum, load_library
 from interp.standins.unreadable_lines import COUNT, UNREADABLE
 from interp.standins.unset_data import unset_data, with_values
@@ -178,8 +180,7 @@ def complete(project: Project, sources: Mapping[str, Source]) -> Completed:
     places = Places([sources[one.path] for one in project.modules])
     texts: tuple[Source, ...] = ()
     if unset:
-        values = Signatures((), lambda _name: None, {}, places)
-        project, texts = with_values(project, sources, unset, values.value)
+        project, texts = with_values(project, sources, unset, DefaultValues(places).usable)
         sources = {**sources, **{one.path: one for one in texts}}
     if not (wanted.data or wanted.routines or wanted.types):
         return Completed(project, texts, listed)
@@ -266,23 +267,24 @@ class _Making:
             for name, datum in library.data.items()
             if name.endswith(_DEFAULT)
         }
-        signatures = Signatures(
-            self._enumerations(), self._type, values, self._places, self._types, unknown
+        defaults = DefaultValues(self._places)
+        declarations = DerivedDeclarations(
+            self._enumerations(), self._type, values, defaults, self._types, unknown
         )
         before = dict(self._texts)
         for name in unknown:
-            signatures.type(name, uses.types[name])
+            declarations.type(name, uses.types[name])
         for name, routine in uses.routines.items():
             known = load_packages().routines.get(name)
-            self._texts[_path(name)] = signatures.routine(name, routine, known)
+            self._texts[_path(name)] = derived_routine(name, routine, declarations, known)
         data = [
             line
             for name, use in uses.data.items()
-            for line in signatures.data(name, use, is_last=is_last)
+            for line in declarations.data(name, use, is_last=is_last)
         ]
-        self._add_own_lists(signatures, uses, is_last=is_last)
-        self._texts[_data_path()] = self._data_list(signatures, data)
-        self.placed = signatures.placed
+        self._add_own_lists(declarations, uses, is_last=is_last)
+        self._texts[_data_path()] = self._data_list(declarations, data)
+        self.placed = defaults.placed
         if self._texts == before and not is_last:
             return True
         self.project = self._linked()
@@ -308,13 +310,15 @@ class _Making:
         """Return whether the data list of a program is missing; it may have declared anything."""
         return module.suffix != ".dat" and self._original.data_of(module) is None
 
-    def _add_own_lists(self, signatures: Signatures, uses: Uses, *, is_last: bool) -> None:
+    def _add_own_lists(
+        self, declarations: DerivedDeclarations, uses: Uses, *, is_last: bool
+    ) -> None:
         """Add data lists for missing ones, with the variables whose types differ by program."""
         lines: dict[str, list[str]] = {}
         for (path, name), use in uses.apart.items():
-            signatures.owner = path
+            declarations.owner = path
             lines.setdefault(f"{path.rpartition('.')[0]}.dat", []).extend(
-                signatures.data(name, use, is_last=is_last, access="")
+                declarations.data(name, use, is_last=is_last, access="")
             )
         for path, declared in lines.items():
             name = re.sub(r"\W", "_", PurePosixPath(path).stem, flags=re.ASCII)
@@ -359,11 +363,11 @@ class _Making:
     def _first_use(self) -> tuple[Module, ast.Name]:
         return next(iter((self._wanted.routines | self._wanted.data).values()))
 
-    def _data_list(self, signatures: Signatures | None, lines: Sequence[str]) -> str:
+    def _data_list(self, declarations: DerivedDeclarations | None, lines: Sequence[str]) -> str:
         library = load_library()
         texts = [library.types[one] for one in self._wanted.types if one in library.types]
-        if signatures is not None:
-            texts += signatures.types.values()
+        if declarations is not None:
+            texts += declarations.types.values()
         for name in self._wanted.data:
             datum = library.data.get(name)
             if datum is not None:
