@@ -113,7 +113,7 @@ _SOURCES = """\
 | F5 | blog.davidrobot.com, 2016: outputs and a counter watched on a controller |
 | F6 | robot-forum.com on velocities in T1 (43227) |
 | F7, F8 | robot-forum.com on characters (1548) and analogue outputs (44124) |
-| F9 | robot-forum.com on splines (22822) |
+| F9, F10 | robot-forum.com on splines (22822) and on Status and Turn (42877) |
 | D1 | 2,920 taught points of ten public repositories, 443 of them with machine data |
 | D2 to D4 | programs in public repositories |
 | X1 to X7 | pages of unknown or machine-written origin, named where they contradict |
