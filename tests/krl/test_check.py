@@ -84,6 +84,20 @@ def test_errors_come_last_and_names_of_missing_files_are_one_note(
     assert "2 files checked: 1 error, 1 warning, 5 notes" in err
 
 
+def test_parameters_without_declaration_are_one_warning_a_file(
+    elsewhere: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A file that lists the heads of routines has one warning on all of them, and three in JSON."""
+    heads = "".join(f"DEF {name}(X:IN)\nEND\n" for name in "ABC")
+    (elsewhere / "A.src").write_text(heads, encoding="utf-8")
+    check("--no-cache", "--select", "KRL115", ".")
+    out, err = capsys.readouterr()
+    message = "3 routines do not declare all parameters: lines 1, 3, 5"
+    assert f"A.src:1:7: warning KRL115: {message}" == out.splitlines()[0]
+    assert "1 file checked: 3 warnings\n" == err
+    assert [1, 3, 5] == [one["line"] for one in records(capsys, "--select", "KRL115", ".")]
+
+
 @pytest.mark.usefixtures("programs")
 @pytest.mark.parametrize(
     ("arguments", "status"),
