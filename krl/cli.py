@@ -1,5 +1,6 @@
 """The entry point of `krl`; `krl.commands.app` lists the commands."""
 
+import gc
 import os
 import sys
 from collections.abc import Sequence
@@ -18,4 +19,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     if "_KRL_COMPLETE" in os.environ:  # the shell asks what could be typed
         app()(prog_name="krl")
-    return errors.run(app(*given), given)
+    status = errors.run(app(*given), given)
+    if arguments is None:
+        gc.freeze()  # else the end of the process visits all that a command keeps
+    return status

@@ -18,6 +18,7 @@ from krl.terminal.options import JobsOption
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from support.files.user_cache import user_cache
+from support.gc_pause import gc_paused
 from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -196,6 +197,12 @@ class _Check:
 
     def run(self, format_: Format, out: Path | None, is_verbose: bool) -> set[str]:
         """Write the new findings, sum them up on stderr, and return their severities."""
+        from grammar.check.project.project_check import MANY_OBJECTS
+
+        with gc_paused(MANY_OBJECTS):  # until all is written: what a check keeps is no garbage
+            return self._run(format_, out, is_verbose)
+
+    def _run(self, format_: Format, out: Path | None, is_verbose: bool) -> set[str]:
         report = self._report()
         kept, more = self._kept(report), ""
         if self.baseline is not None:
