@@ -187,7 +187,7 @@ def run_program(
         submit_sink=submit_sink,
         machine=machine,
         values={**values, "$EX_AX_NUM": len(machine.externals)},  # of the arm that runs
-        tracking=tracking,
+        follower=tracking,
     )
     if debugger is not None:
         debugger.attach(controller)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 from grammar.semantics.types import Type
 from interp.controller.inputs.automatic_inputs import AutomaticInputs
@@ -18,6 +17,7 @@ from interp.controller.interrupts.interrupt_unit import InterruptUnit
 from interp.controller.interrupts.levels import Levels
 from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.arm_control import ArmControl
+from interp.controller.motion.follower import Follower, Nobody
 from interp.controller.motion.motion_queue import MotionQueue, PlannedPoint
 from interp.controller.motion.output_switch import OutputSwitch
 from interp.controller.motion.positions import FramesInForce, Positions
@@ -41,9 +41,6 @@ from interp.port.executor import Executor
 from interp.port.requests import At, Path, Value
 from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.kinematics.machine_data import MachineData
-
-if TYPE_CHECKING:
-    from interp.robot.simulation.tracking import Tracking
 
 #: The number of longest waits that are reported, and of variables that each shows.
 _MOST_WAITS, _MOST_NAMES = 5, 4
@@ -73,7 +70,7 @@ class Controller:
     them to ``trace``; likewise ``submit``. ``core`` creates the control core from the function that
     switches outputs: ``lambda switch: ControlCore(arm, switch, cycle=1)``. ``machine`` has the
     machine data of the arm, for Status and Turn. ``values`` are the initial values that data lists
-    give to system variables. ``tracking`` sends the set-points to a robot and measures where it is.
+    give to system variables. ``follower`` receives the set-points, by default nobody.
 
     Raises `ScriptError`.
     """
@@ -89,23 +86,25 @@ class Controller:
         sink: TaskSink,
         submit: Executor | None = None,
         submit_sink: TaskSink | None = None,
-        machine: MachineData | None = None,
+        machine: MachineData,
         values: Mapping[str, Value] | None = None,
-        tracking: Tracking | None = None,
+        follower: Follower | None = None,
     ) -> None:
         script = script or Script()
         state = ControllerState(profile, trace, machine, values or {})
         outputs = OutputSwitch(state.clock, state.variables, state.signals)
         arm = ArmControl(core(outputs.switch), state.clock, state.variables)
         frames = FramesInForce(state.variables, machine, arm.core)
-        positions = Positions(state, arm.core, frames, tracking)
-        queue = MotionQueue(state, arm.core, outputs, positions, frames, tracking)
+        follower = follower or Nobody(arm.core.arm)
+        positions = Positions(state, arm.core, frames, follower)
+        queue = MotionQueue(state, arm.core, outputs, positions, frames, follower)
         channels = Channels(state.clock)
         connect_computed(state, arm.core, queue, channels)
         errors = ErrorVariable(state)
         tasks = [_task("robot", "$RINT_LIST", state, errors, executor, sink)]
         if submit is not None:
             tasks.append(_task("submit", "$SINT_LIST", state, errors, submit, submit_sink))
+            state.program_states["submit"] = "P_ACTIVE"  # [SUB-02]
         panel = OperatorPanel(state, arm, tasks)
         player = ScriptPlayer(script, state, panel, channels)
         automatic = AutomaticInputs(script, state)
@@ -158,7 +157,7 @@ class Controller:
             handlers,
             panel,
             player,
-            tracking,
+            follower,
             QuietTime(state, queue, automatic),
             script.stop,
         )
@@ -192,11 +191,12 @@ class Controller:
 
     def look(self, path: Path) -> Value:
         """Return the value of a system variable, without side effects; raise `Fault`."""
-        before = self.variables.has_read_changing
+        activity = self.variables.activity
+        before = activity.has_read_changing
         try:
             return self.variables.read(path)
         finally:
-            self.variables.has_read_changing = before
+            activity.has_read_changing = before
 
     def type_of(self, path: Path) -> Type:
         """Return the type of a system variable or of a part of it; `UNKNOWN` if not in a table."""
@@ -227,8 +227,7 @@ class Controller:
     def run(self, until: int = HOUR) -> RunOutcome:
         """Run until the program ends, halts without a later START, or until a time in µs.
 
-        After a halt, another call is a START. Raises `ScriptError` for a value that a variable
-        cannot have.
+        Raises `ScriptError` for a value that a variable cannot have.
         """
         return self._scheduler.run(until)
 

@@ -24,7 +24,7 @@ from interp.controller.state.tasks import Blocked, Task
 from interp.port.requests import Poll, Read, Request, Slice, StopAdvance, Wait, Write
 
 #: Requests that leave nothing in a trace, apart from the effects of their writes.
-REPEATABLE: Final = (Read, Write, StopAdvance, Slice, Poll)
+_REPEATABLE: Final = (Read, Write, StopAdvance, Slice, Poll)
 #: The largest number of comparisons with one mark, so that a state that never recurs costs little.
 _LOOKS: Final = 1024
 
@@ -40,17 +40,21 @@ class _Mark:
 
 @dataclass(slots=True)
 class QuietTime:
-    """Detects quiet time. ``acts`` counts the requests that are not `REPEATABLE`."""
+    """Detects quiet time. ``_acts`` counts the requests that are not `_REPEATABLE`."""
 
     state: ControllerState
     queue: MotionQueue
     automatic: AutomaticInputs
-    acts: int = 0
-    _before: tuple[int, ...] | None = None
+    _acts: int = 0
+    _before: tuple[int | None, ...] | None = None
     _mark: _Mark | None = None
     _reach: int = 0
     _begun: int | None = None
     _since: int = -1
+
+    def asked(self, request: Request) -> None:
+        """Note a request."""
+        self._acts += not isinstance(request, _REPEATABLE)
 
     def begin_tick(self, robot: Task) -> None:
         """Begin a tick; the second call in a tick, after an interruption of the run, is ignored."""
@@ -58,18 +62,23 @@ class QuietTime:
             return
         self._since, self._begun = self.state.clock.now, _begun(robot)
         counts = self._counts()
-        if self._before != counts or self.state.variables.has_read_changing:
+        if self._before != counts or self.state.variables.activity.has_read_changing:
             self._mark = None
         self._before = counts
-        self.state.variables.has_read_changing = False
+        self.state.variables.activity.has_read_changing = False
 
-    def end(self, tasks: Sequence[Task], now: int, limit: int) -> int:
-        """Return the time in µs up to which all ticks are like the previous one, or ``now``."""
+    def end(self, tasks: Sequence[Task], now: int, limit: int, needs_ticks: bool) -> int:
+        """Return the time in µs up to which all ticks are like the previous one, or ``now``.
+
+        None is skipped of a controller that ``needs_ticks``.
+        """
         clock, state = self.state.clock, self.state
         is_quiet = (
-            clock.is_tick
+            now < limit
+            and clock.is_tick
+            and not needs_ticks
             and self._before == self._counts()
-            and not state.variables.has_read_changing
+            and not state.variables.activity.has_read_changing
             and self.queue.next_time() is None
         )
         if not is_quiet:
@@ -80,7 +89,7 @@ class QuietTime:
         robot, *others = tasks  # the others have longer slices
         is_same = _begun(robot) == self._begun is not None  # no condition has called a function
         if _waits(robot, Wait, *[Poll][:is_same]) and all(_waits(task, Wait) for task in others):
-            return end - end % clock.cycle
+            return max(now, end - end % clock.cycle)
         if any(task.blocked and task.blocked.wake != now for task in tasks if not _is_timed(task)):
             return now  # a slice would begin too soon after the stretch
         return now + self._skipped([task for task in tasks if not task.is_over], end - now)
@@ -124,7 +133,7 @@ class QuietTime:
         executor shows every statement.
         """
         blocked, now = task.blocked, self.state.clock.now
-        is_waiting = blocked is not None and isinstance(blocked.request, (*REPEATABLE, Wait))
+        is_waiting = blocked is not None and isinstance(blocked.request, (*_REPEATABLE, Wait))
         if not is_waiting or blocked is None or task.levels or task.signals or task.is_halted:
             return None
         state = None if task.recurrent is None else task.recurrent.recurrence_state()
@@ -136,9 +145,14 @@ class QuietTime:
         wake = None if blocked.wake is None else blocked.wake - now
         return *place, wake, task.spent, min(now - task.busy_at, IDLE_AFTER)
 
-    def _counts(self) -> tuple[int, ...]:
+    def _counts(self) -> tuple[int | None, ...]:
         state = self.state
-        return state.trace.count, state.variables.writes, self.queue.count, self.acts
+        return (
+            state.trace.count,
+            state.variables.activity.changes,
+            self.queue.next_time(),
+            self._acts,
+        )
 
 
 def _begun(task: Task) -> int | None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import Any, Final, Literal
 
 from interp.controller.inputs.operator_panel import OperatorPanel
 from interp.controller.inputs.script_player import ScriptPlayer
@@ -19,20 +19,18 @@ from interp.controller.interrupts.interrupt_unit import InterruptUnit
 from interp.controller.interrupts.levels import Levels
 from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.arm_control import ArmControl
+from interp.controller.motion.follower import Follower
 from interp.controller.motion.motion_queue import MotionQueue
-from interp.controller.quiet_time import REPEATABLE, QuietTime
+from interp.controller.quiet_time import QuietTime
 from interp.controller.requests.waits import Waits
 from interp.controller.spline_stops import SplineStops
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.executor import SliceScheduling
-from interp.port.requests import At, Crash, End, Fail, Request, Slice, StopAdvance
+from interp.port.requests import At, Crash, End, Fail, Request, Slice
 from interp.robot.simulation.robot import RobotFault
 from interp.values.faults import BudgetExhausted, Fault, LinkError, RuntimeFailure
 from support.lazy_dataclass import dataclass
-
-if TYPE_CHECKING:
-    from interp.robot.simulation.tracking import Tracking
 
 #: How a run ended: at the end of the program; at a HALT without a later start; by a fault; because
 #: the program used up its statements; because the time is over; by a defect of ours.
@@ -83,7 +81,7 @@ class Scheduler:
     handlers: Handlers
     panel: OperatorPanel
     player: ScriptPlayer
-    tracking: Tracking | None
+    follower: Follower
     quiet: QuietTime
     stop: int | None
     _outcome: RunOutcome | None = None
@@ -100,15 +98,13 @@ class Scheduler:
     def run(self, until: int) -> RunOutcome:
         """Run until the program ends, or halts without a later start, or until a time in µs.
 
-        After a `halt` a further call is START. Raises `ScriptError` for a value that a variable
-        cannot have.
+        Raises `ScriptError` for a value that a variable cannot have.
         """
         outcome = self._run_until(until if self.stop is None else min(until, self.stop))
-        if self.tracking is not None:
-            try:
-                self.tracking.settle(self.state.clock.now)
-            except RobotFault as error:
-                return RunOutcome("fault", self.state.clock.now, self.queue.running, error)
+        try:
+            self.follower.settle(self.state.clock.now)
+        except RobotFault as error:
+            return RunOutcome("fault", self.state.clock.now, self.queue.running, error)
         return outcome
 
     @property
@@ -116,14 +112,8 @@ class Scheduler:
         return self.tasks[0]
 
     def _run_until(self, limit: int) -> RunOutcome:
-        clock, states = self.state.clock, self.state.program_states
-        if self._outcome is not None and self._outcome.ending == "halt":
-            self.panel.press("START")
+        clock = self.state.clock
         self._outcome, self._limit = None, limit
-        if states["robot"] == "P_RESET":
-            states["robot"] = "P_ACTIVE"
-        if len(self.tasks) > 1 and states["submit"] == "P_FREE":  # [SUB-02]
-            states["submit"] = "P_ACTIVE"
         self._begin()
         while True:
             self._settle()
@@ -140,9 +130,7 @@ class Scheduler:
 
     def _pass(self, then: int) -> None:
         """Go on to the next time at which anything can happen, and beyond what is quiet."""
-        if then < self._limit and not self._needs_every_tick:
-            then = max(then, self.quiet.end(self.tasks, then, self._limit))
-        self._go_to(then)
+        self._go_to(self.quiet.end(self.tasks, then, self._limit, self._needs_every_tick))
         self._begin()
 
     def _begin(self) -> None:
@@ -162,10 +150,12 @@ class Scheduler:
             self._has_acted = False
             for task in self.tasks:
                 self._run(task)
-        is_over = self._failed is not None and self.arm.is_standing and not self._is_finishing
-        if self._outcome is None and self._failed is not None and is_over:
-            self._outcome = replace(self._failed, time=clock.now)
-        if self._outcome is None and self._robot.is_halted and not self.player.awaits("START"):
+        if self._outcome is not None:
+            return
+        failed = self._failed
+        if failed is not None and self.arm.is_standing and not self._is_finishing(failed):
+            self._outcome = replace(failed, time=clock.now)
+        elif self._robot.is_halted and not self.player.awaits("START"):
             self._outcome = RunOutcome("halt", clock.now, self._robot.at)
 
     def _tick(self) -> None:
@@ -185,11 +175,10 @@ class Scheduler:
 
     def _go_to(self, time: int) -> None:
         self.state.clock.now = self.state.trace.now = time
-        if self.tracking is not None:
-            try:
-                self.tracking.advance(time)
-            except RobotFault as error:
-                self._fail(self._robot, Fail(self.queue.running or self._robot.at, error))
+        try:
+            self.follower.advance(time)
+        except RobotFault as error:
+            self._fail(self._robot, Fail(self.queue.running or self._robot.at, error))
 
     def _collect(self) -> None:
         """Handle what the arm has done up to now, and do what else is due."""
@@ -203,10 +192,11 @@ class Scheduler:
 
     def _next_time(self) -> int | None:
         clock = self.state.clock
-        ahead = self.queue.next_time()
-        times = [ahead, self.state.actions.next_time()]
-        if ahead is not None and self.tracking is not None and self.tracking.chunk is not None:
-            times.append(clock.now + self.tracking.chunk)
+        times = [
+            self.queue.next_time(),
+            self.state.actions.next_time(),
+            self.follower.next_time(clock.now),
+        ]
         needs_ticks = self._needs_every_tick
         for task in self.tasks:
             if task.is_over:
@@ -231,12 +221,10 @@ class Scheduler:
                     answer = self._answer(task, task.executor.advance(task.reply))
                 elif blocked.is_ready():
                     task.blocked = None
-                    self.waits.waited(task, blocked)
                     self.state.trace.origin = task.name, blocked.request.at
-                    changes = self._changes
-                    answer = blocked.finish()
-                    if self._changes != changes:
-                        self.waits.acted(task, blocked.request, has_changed=True)
+                    before = self.waits.changes
+                    answer = _outcome_of(blocked.finish)
+                    self.waits.waited(task, blocked, before)
                 else:
                     return
             except RuntimeFailure as error:  # of an interrupt, a trigger, a condition
@@ -245,15 +233,16 @@ class Scheduler:
             self._has_acted = True
             task.blocked = answer if isinstance(answer, Blocked) else None
             task.reply = None if isinstance(answer, Blocked) else answer
-            free_until, self._free_until = self._free_until, 0
-            if free_until and (then := self._wake(task)) is not None and then < free_until:
-                self._pass(then)
+            self._pass_free_slices(task)
 
-    @staticmethod
-    def _wake(task: Task) -> int | None:
-        """When the slices of a program are over that have passed, if it waits for that."""
+    def _pass_free_slices(self, task: Task) -> None:
+        """Go on to when the slices of a program are over that have passed."""
+        free_until, self._free_until = self._free_until, 0
         blocked = task.blocked
-        return blocked.wake if blocked and isinstance(blocked.request, Slice) else None
+        if free_until and blocked is not None and isinstance(blocked.request, Slice):
+            assert blocked.wake is not None, "the end of a slice"
+            if blocked.wake < free_until:
+                self._pass(blocked.wake)
 
     def _free_slices(self, begins: bool) -> int:
         """The slices of the robot's program in which nothing can happen before the last begins.
@@ -262,7 +251,7 @@ class Scheduler:
         """
         robot, *others = self.tasks
         is_alone = not self.queue.pending and all(task.is_over for task in others)
-        left = self.waits.requests_left(robot, self.state.profile.requests)
+        left = self.waits.requests_left(robot)
         is_spent = robot.slice_end == self.waits.next_slice(robot) and robot.spent >= left
         if robot.levels or not (begins or (is_alone and not is_spent)):
             return int(begins)
@@ -288,43 +277,16 @@ class Scheduler:
                     "crash", self.state.clock.now, at, RuntimeFailure(reason)
                 )
                 return None
-        most = None
-        if task.level is None or task.level.signal is None:
-            profile = self.state.profile
-            most = profile.requests if task is self._robot else profile.submit_requests
-            last = self.waits.next_slice(task)
-            if task.slice_end != last:
-                task.slice_end, task.spent = last, 0
-            task.spent += request.count if isinstance(request, StopAdvance) else 1
-            if task.spent > self.waits.requests_left(task, most):
-                late = self.waits.until(request, last, lambda: self._answer(task, request))
-                late.is_postponed = True
-                if self.waits.is_idle(task):
-                    task.executor.waited()
-                return late
-        exempt = task.exempt_line
-        if exempt is not None and (request.at.file, request.at.line) != exempt:
+        if self.waits.is_one_too_many(task, request):
+            return self.waits.postponed(task, request, lambda: self._answer(task, request))
+        if task.exempt_line != (request.at.file, request.at.line):
             task.exempt_line = None
         self.state.trace.origin = task.name, request.at
-        if not isinstance(request, REPEATABLE):
-            self.quiet.acts += 1
-        changes = self._changes
-        answer: Answer
-        try:
-            answer = self.handlers[type(request)](task, request)
-        except Fault as error:
-            answer = error
-        self.waits.acted(task, request, has_changed=self._changes != changes)
-        is_passed = isinstance(request, StopAdvance) and answer is None
-        if is_passed and most is not None and task.exempt_line is None:
-            return most - task.spent  # nothing is ahead, until it makes another request
-        return answer
-
-    @property
-    def _changes(self) -> tuple[int, int]:
-        """How often programs have changed a system variable or a signal, and where the arm goes."""
-        changes = self.state.variables.writes + self.state.signals_changed
-        return changes - self.quiet.automatic.count, len(self.queue.points)
+        self.quiet.asked(request)
+        before = self.waits.changes
+        answer = _outcome_of(lambda: self.handlers[type(request)](task, request))
+        self.waits.acted(task, request, before)
+        return self.waits.passed(task, request) if answer is None else answer
 
     def _end(self, task: Task, request: End) -> Answer:
         """The program has ended once the arm has come to where it left it [ADV-07]."""
@@ -339,11 +301,9 @@ class Scheduler:
 
         return self.advance.when_reached(task, request, finish)
 
-    @property
-    def _is_finishing(self) -> bool:
-        """Whether the arm still does what came before a line that can never be run."""
-        assert self._failed is not None, "a program has failed"
-        return isinstance(self._failed.error, LinkError) and bool(self.queue.pending)
+    def _is_finishing(self, failed: RunOutcome) -> bool:
+        """Return whether the arm still does what came before a line that can never be run."""
+        return isinstance(failed.error, LinkError) and bool(self.queue.pending)
 
     def _fail(self, task: Task, request: Fail) -> None:
         """A fault that the program did not catch: its message, and the arm stops on its path.
@@ -367,6 +327,14 @@ class Scheduler:
         ending: Ending = "budget" if isinstance(error, BudgetExhausted) else "fault"
         self._failed = RunOutcome(ending, state.clock.now, request.at, error)
         if isinstance(error, LinkError):
-            self.queue.release()
+            self.queue.stop_advance()
         else:
             self.arm.halt(is_hard=isinstance(error, RobotFault))
+
+
+def _outcome_of(act: Callable[[], Answer]) -> Answer:
+    """Return what an action returns, or the fault that it raises, for the program to catch."""
+    try:
+        return act()
+    except Fault as error:
+        return error

@@ -95,7 +95,7 @@ class Place:
     """
 
     key: int
-    kind: Literal["DISTANCE", "PATH"]
+    kind: str
     position: float
     on_start: bool = False
     delay: int = 0

@@ -10,12 +10,19 @@ from typing import Final
 from interp.controller.interrupts.levels import Levels
 from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.arm_control import ArmControl
-from interp.controller.motion.motion_queue import MotionQueue, TriggerCall
+from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.motion.positions import Positions
 from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import ALWAYS, Answer, Blocked, Level, Task
-from interp.port.requests import BrakeArm, DeclareInterrupt, Request, Resume, SwitchInterrupt
+from interp.port.requests import (
+    BrakeArm,
+    DeclareInterrupt,
+    Request,
+    Resume,
+    SetTrigger,
+    SwitchInterrupt,
+)
 from interp.robot.api.commands import CallCommand
 from support.lazy_dataclass import dataclass
 
@@ -75,10 +82,8 @@ class InterruptUnit:
     def _enter_call(self, task: Task, command: CallCommand, priority: int) -> None:
         if priority < task.priority:
             self._queue.fired.remove(command)
-            call = _call(command)
-            self._levels.enter(
-                task, "trigger", priority, call.trigger.at, call.action, call=command
-            )
+            trigger = _trigger(command)
+            self._levels.enter(task, "trigger", priority, trigger.at, trigger.action, call=command)
 
     # ---------------------------------------------------------------------- BRAKE and RESUME
 
@@ -113,7 +118,6 @@ class InterruptUnit:
         target = level.interrupt.depth
         if level.depth <= target:
             raise own_fault("resume_level")
-        self._queue.release()
         if not level.motions:
             return self._resume(task, request, target)
         self._advance.stop(task, request)
@@ -140,12 +144,12 @@ class InterruptUnit:
         )
 
 
-def _call(command: CallCommand) -> TriggerCall:
-    assert isinstance(command.what, TriggerCall), "made by the motion queue"
+def _trigger(command: CallCommand) -> SetTrigger:
+    assert isinstance(command.what, SetTrigger), "made by the motion queue"
     return command.what
 
 
 def _priority(command: CallCommand) -> int:
     """Return the priority of a trigger's action; an assignment has none and always runs."""
-    priority = _call(command).trigger.priority
+    priority = _trigger(command).priority
     return ALWAYS if priority is None else _SYSTEM if priority == -1 else priority

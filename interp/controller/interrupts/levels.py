@@ -16,7 +16,6 @@ from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import ALWAYS, Answer, Blocked, Level, LevelKind, Task
 from interp.port.requests import At, CodeHandle, End, SwitchSignal
 from interp.robot.api.commands import CallCommand
-from interp.values.faults import Fault
 from support.lazy_dataclass import dataclass
 
 
@@ -68,10 +67,7 @@ class Levels:
         level = task.levels[-1]
         here = self._positions.actual().axes
         if level.braked_at is not None and not _is_near(level.braked_at, here):
-            try:
-                self._queue.plan_return(task, level.at, level.braked_at)
-            except Fault as error:
-                return error
+            self._queue.plan_return(task, level.at, level.braked_at)
         return Blocked(end, lambda: not level.motions, lambda: self._finish(task), is_open=False)
 
     def _finish(self, task: Task) -> Answer:

@@ -14,7 +14,6 @@ from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
 from interp.port.requests import Continue, Request, StopAdvance
-from interp.values.faults import Fault
 
 
 class AdvanceRun:
@@ -32,19 +31,10 @@ class AdvanceRun:
         """
         if task.name == "submit" or task.exempt_line is not None:
             return then()
-        self._queue.release()
-        if not self._queue.own_pending(task):
+        if not self._queue.is_ahead(task):
             return then()
         self.stop(task, request)
-
-        def finish() -> Answer:
-            self._state.trace.origin = task.name, request.at
-            try:
-                return then()
-            except Fault as error:
-                return error
-
-        return Blocked(request, lambda: not self._queue.own_pending(task), finish)
+        return Blocked(request, lambda: not self._queue.is_ahead(task), then)
 
     def stop(self, task: Task, request: Request) -> None:
         """Record that a request stops the advance run."""

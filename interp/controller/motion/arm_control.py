@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from interp.controller.state.clock import Clock
 from interp.controller.state.variables import Variables
 from interp.port.requests import Path, Value
@@ -67,10 +69,11 @@ class ArmControl:
         self._is_held = False
         self._apply_override()
 
-    def changed(self, path: Path, value: Value) -> None:
+    def changed(self, path: Path, _value: Value) -> None:
         """Note an assignment to a system variable: $OV_PRO takes effect at once."""
-        if path == ("$OV_PRO",) and isinstance(value, int | float) and not self._is_held:
-            self.core.override(self._clock.now, float(value))
+        if path == ("$OV_PRO",) and not self._is_held:
+            self._apply_override()
 
     def _apply_override(self) -> None:
-        self.changed(("$OV_PRO",), self._variables.read(("$OV_PRO",)))
+        percent: Any = self._variables.read(("$OV_PRO",))
+        self.core.override(self._clock.now, float(percent))

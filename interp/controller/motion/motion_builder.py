@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 from grammar.motion_kinds import AXIS_MOTIONS
 from interp.controller.motion.positions import FramesInForce, pose_of, word_of
@@ -37,7 +37,7 @@ from interp.robot.arm import (
 )
 from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
 from interp.values.poses import IDENTITY
-from interp.values.values import ArrayValue, StructureValue, known
+from interp.values.values import StructureValue, known
 
 _LOADS: Final = ("$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3")
 #: The motion that brings the arm to the end of a line with which a program begins.
@@ -75,7 +75,7 @@ def is_complete(target: Target) -> bool:
 
 def _numbers(value: Any) -> tuple[float, ...]:
     """Return the elements of an array; faults ``uninitialised`` if one has no value [TYP-13]."""
-    found: list[Any] = [known(one) for one in value] if isinstance(value, ArrayValue) else []
+    found: list[Any] = [known(one) for one in value]
     return tuple(map(float, found))
 
 
@@ -152,7 +152,7 @@ class MotionBuilder:
                 kind, criteria = _BROUGHT[kind], ()
             self._refuse_start(request.at, kind)
         snapshot = self._variables.snapshot(request.values)
-        self._check_frames(snapshot, kind, target)
+        self._check_frames(snapshot, target)
         settings = self._settings(snapshot)
         auxiliary = None if request.auxiliary is None else target_of(request.auxiliary)
         angle = request.angle
@@ -252,7 +252,7 @@ class MotionBuilder:
     ) -> SplinePart:
         snapshot = self._variables.snapshot((*block.values, *item.values))
         target = target_of(item.target)
-        self._check_frames(snapshot, item.kind, target)
+        self._check_frames(snapshot, target)
         kind, _, suffix = item.kind.partition("_")
         return SplinePart(
             kind,
@@ -266,9 +266,10 @@ class MotionBuilder:
             tuple(places),
         )
 
-    def _check_frames(self, snapshot: Snapshot, kind: str, target: Target) -> None:
+    @staticmethod
+    def _check_frames(snapshot: Snapshot, target: Target) -> None:
         """Check that a Cartesian motion has a tool and a base [MOT-15]."""
-        if kind in AXIS_MOTIONS and not set("XYZABC") & set(target):
+        if not set("XYZABC") & set(target):
             return
         if pose_of(snapshot["$TOOL"]) is None:
             raise message_fault(1419)
@@ -310,5 +311,4 @@ class MotionBuilder:
     def _place(self, kind: str, position: float, on_start: bool, delay: float) -> Place:
         """Return a place with a new key; ``delay`` is in ms, as in TRIGGER [TRG-03]."""
         self._key += 1
-        place: Literal["DISTANCE", "PATH"] = "DISTANCE" if kind == "DISTANCE" else "PATH"
-        return Place(self._key, place, position, on_start, round(delay * 1000))
+        return Place(self._key, kind, position, on_start, round(delay * 1000))

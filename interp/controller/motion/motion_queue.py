@@ -10,19 +10,19 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final, Protocol, runtime_checkable
+from typing import Any, Final, Protocol, runtime_checkable
 
 from grammar.motion_kinds import AXIS_MOTIONS, SPLINE_MOTIONS, WITHOUT_PATH
+from interp.controller.motion.follower import Follower
 from interp.controller.motion.motion_builder import MotionBuilder, PlannedMotion
 from interp.controller.motion.output_switch import OutputSwitch
-from interp.controller.motion.positions import FramesInForce, Positions
+from interp.controller.motion.positions import FramesInForce, Positions, word_of
 from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Task
 from interp.controller.state.trace import path_text
 from interp.port.requests import (
     At,
-    CodeHandle,
     Move,
     MoveSpline,
     Path,
@@ -38,15 +38,11 @@ from interp.robot.api.commands import (
     Transaction,
 )
 from interp.robot.api.control_core import ControlCore
-from interp.robot.arm import Motion, Place, Position
+from interp.robot.arm import Motion, Position
 from interp.values.faults import Fault
 from interp.values.json_form import to_json
 from interp.values.poses import Pose
-from interp.values.values import EnumValue
 from support.lazy_dataclass import dataclass
-
-if TYPE_CHECKING:
-    from interp.robot.simulation.tracking import Tracking
 
 #: The values that PRIO may have for triggers that call a routine [TRG-06].
 _PRIORITIES: Final = frozenset({1, 2, *range(4, 40), *range(81, 129)})
@@ -62,14 +58,6 @@ _KINDS: Final = {
     "apex": "blend_apex",
     "blend_end": "blend_end",
 }
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class TriggerCall:
-    """The action of a trigger that does more than switch an output."""
-
-    trigger: SetTrigger
-    action: CodeHandle
 
 
 @dataclass(slots=True, eq=False)
@@ -109,7 +97,7 @@ class _HasTarget(Protocol):
 class MotionQueue:
     """Plans motions, and follows their execution by the control core.
 
-    ``tracking`` is told the frames of each motion that starts.
+    ``follower`` is told each motion that starts.
     """
 
     def __init__(
@@ -119,17 +107,17 @@ class MotionQueue:
         outputs: OutputSwitch,
         positions: Positions,
         frames: FramesInForce,
-        tracking: Tracking | None,
+        follower: Follower,
     ) -> None:
         self._state = state
         self._core = core
         self._output_switch = outputs
         self._positions = positions
-        self._tracking = tracking
+        self._follower = follower
         self._builder = MotionBuilder(state, frames)
         self._queued: dict[int, _QueuedMotion] = {}
-        self._outputs: dict[OutputCommand, SetTrigger] = {}
-        self._calls: dict[CallCommand, SetTrigger] = {}
+        #: The triggers that are set, by the commands of their actions.
+        self._triggers: dict[OutputCommand | CallCommand, SetTrigger] = {}
         #: $OUT_C: the assignments to make at the end of a motion, by the motion's number.
         self._at_end: dict[int, list[tuple[Task, At, Path, Value]]] = defaultdict(list)
         #: Actions of triggers that have fired and have not been entered.
@@ -143,8 +131,6 @@ class MotionQueue:
         self.running: At | None = None
         #: The number of motions that have ended.
         self.ended = 0
-        #: The number of events that the core has reported.
-        self.count = 0
         #: Whether the arm is on its way to the first point of the program [ADV-14].
         self.is_coincidence_run = False
 
@@ -186,15 +172,13 @@ class MotionQueue:
         motion = planned.motion
         command = MotionCommand(motion)
         transaction = Transaction(command)
-        places = [*motion.places, *(place for part in motion.parts for place in part.places)]
-        outputs, calls = self._link(planned, command, transaction, places)
+        triggers = self._link(planned, command, transaction)
         try:
             self._core.load(self._state.clock.now, transaction)
         except Fault:
             self._builder.forget()
             raise
-        self._outputs |= outputs
-        self._calls |= calls
+        self._triggers |= triggers
         arm = self._core.arm
         target = arm.target() if isinstance(arm, _HasTarget) else None
         self._queued[motion.number] = _QueuedMotion(planned, task, target)
@@ -221,34 +205,27 @@ class MotionQueue:
             self._state.messages.post_number(motion.at, number)
         self.collect()
 
+    @staticmethod
     def _link(
-        self,
-        planned: PlannedMotion,
-        command: MotionCommand,
-        transaction: Transaction,
-        places: list[Place],
-    ) -> tuple[dict[OutputCommand, SetTrigger], dict[CallCommand, SetTrigger]]:
-        outputs: dict[OutputCommand, SetTrigger] = {}
-        calls: dict[CallCommand, SetTrigger] = {}
-        for place in places:
+        planned: PlannedMotion, command: MotionCommand, transaction: Transaction
+    ) -> dict[OutputCommand | CallCommand, SetTrigger]:
+        """Add the action of each trigger to a transaction, and return the triggers by it."""
+        motion = command.motion
+        triggers: dict[OutputCommand | CallCommand, SetTrigger] = {}
+        for place in (*motion.places, *(each for part in motion.parts for each in part.places)):
             trigger = planned.triggers[place.key]
-            then: OutputCommand | CallCommand
-            if trigger.output is not None:
-                then = OutputCommand(*trigger.output)
-                outputs[then] = trigger
-            else:
-                then = CallCommand(TriggerCall(trigger, trigger.action))
-                calls[then] = trigger
+            output = trigger.output
+            then = CallCommand(trigger) if output is None else OutputCommand(*output)
+            triggers[then] = trigger
             transaction.add(then).link(command.reached(place), "start", then)
-        return outputs, calls
+        return triggers
 
     def set_trigger(self, task: Task, request: SetTrigger) -> None:
         """Set a trigger for the next motion. Raises `Fault` [TRG-09]."""
         if task.levels or task.name == "submit":
             raise message_fault(1409)
         self._check_trigger(request)
-        waiting = len(task.triggers) + len(self._outputs) + len(self._calls)
-        if waiting >= self._state.profile.most["triggers"]:
+        if len(task.triggers) + len(self._triggers) >= self._state.profile.most["triggers"]:
             raise message_fault(1524)
         task.triggers.append(request)
 
@@ -280,6 +257,11 @@ class MotionQueue:
         """
         return self._core.pending() if task.level is None else len(task.level.motions)
 
+    def is_ahead(self, task: Task) -> bool:
+        """Let the arm execute all motions, and return whether own ones have not ended."""
+        self._core.release(self._state.clock.now)
+        return self.own_pending(task) > 0
+
     @property
     def pending(self) -> int:
         """The number of motions that have not ended."""
@@ -289,15 +271,12 @@ class MotionQueue:
         """Return the time of the next event of the core in µs, according to the present plan."""
         return self._core.next_time()
 
-    def release(self) -> None:
-        """Let the arm execute all motions: no motion follows before it is at rest."""
-        self._core.release(self._state.clock.now)
-
     def stop_advance(self) -> None:
         """Note that the advance run stops after the last planned motion, which has no successor.
 
         The message of an earlier motion that is not blended is 1123 instead of 1442 [ADV-12].
         """
+        self._core.release(self._state.clock.now)
         if self._queued:
             self._queued[max(self._queued)].stops_advance = True
 
@@ -306,19 +285,18 @@ class MotionQueue:
     def collect(self) -> None:
         """Handle all events of the arm and the core up to now."""
         for event in self._core.run_until(self._state.clock.now):
-            self.count += 1
             self._handle(event)
 
     def _handle(self, event: CoreEvent) -> None:
-        command = event.command
-        if isinstance(command, MotionCommand):
-            self._handle_motion(event, command.motion.number)
-        elif isinstance(command, OutputCommand):
-            self._handle_output(event, command)
-        elif isinstance(command, CallCommand) and event.what == "started":
-            self._fire(command)
-        elif isinstance(command, CallCommand) and event.what == "cancelled":
-            self._calls.pop(command, None)
+        match event.command:
+            case MotionCommand() as command:
+                self._handle_motion(event, command.motion.number)
+            case OutputCommand() as command if event.what != "started":
+                self._handle_output(event, command, self._triggers.pop(command))
+            case CallCommand() as command if event.what in ("started", "cancelled"):
+                trigger = self._triggers.pop(command)
+                if event.what == "started":
+                    self._fire(command, trigger)
 
     def _handle_motion(self, event: CoreEvent, number: int) -> None:
         queued = self._queued.get(number)
@@ -334,11 +312,11 @@ class MotionQueue:
             case "started":
                 self._started(queued)
             case "reached" if event.key in queued.planned.stops:
-                is_late = event.arm is not None and event.arm.is_late
-                self.passed_stops.append((task, queued.planned.stops[event.key], is_late))
+                assert event.arm is not None, "the path is passed by the arm"
+                self.passed_stops.append((task, queued.planned.stops[event.key], event.arm.is_late))
             case "ended":
                 self._ended(event, queued)
-            case "cancelled" | "failed":
+            case "cancelled":
                 self._remove(number, task)
 
     def _started(self, queued: _QueuedMotion) -> None:
@@ -348,8 +326,7 @@ class MotionQueue:
         self._positions.keep("BACK")
         if queued.target is not None:
             self._positions.keep("FOR", queued.target)
-        if self._tracking is not None:
-            self._tracking.begun(self._state.clock.now, planned.motion)
+        self._follower.begun(self._state.clock.now, planned.motion)
 
     def _ended(self, event: CoreEvent, queued: _QueuedMotion) -> None:
         state = self._state
@@ -360,7 +337,8 @@ class MotionQueue:
             state.put_at(owner.name, at, path, value)
         if self._has_other_posture(motion):
             state.messages.post_number(motion.at, 2936)
-        if event.arm is not None and event.arm.is_exact_unwanted:
+        assert event.arm is not None, "a motion ends where the arm is"
+        if event.arm.is_exact_unwanted:
             number = 1442 if queued.stops_advance else 1123  # [ADV-12, BLD-10, BLD-14]
             stops = state.variables.read(("$STOPNOAPROX",)) is True
             state.messages.post_number(
@@ -376,30 +354,24 @@ class MotionQueue:
 
         Bits 3 and 4 of Status have no meaning [POS-06].
         """
-        checks = self._state.variables.read(("$CP_STATMON",))
-        is_path = not motion.parts and motion.kind not in AXIS_MOTIONS
-        if not isinstance(checks, EnumValue) or not is_path or self._state.machine is None:
+        if motion.kind in AXIS_MOTIONS:
             return False
+        checks = word_of(self._state.variables.read(("$CP_STATMON",)))
         status, turn = self._positions.status_turn(self._positions.actual().axes)
         is_other = "S" in motion.target and (int(motion.target["S"]) ^ status) & _STATUS_BITS != 0
         has_turned = "T" in motion.target and int(motion.target["T"]) != turn
-        word = checks.name.upper()
-        return (word != "NONE" and is_other) or (word == "CHECK_TS" and has_turned)
+        return (checks != "#NONE" and is_other) or (checks == "#CHECK_TS" and has_turned)
 
     def _remove(self, number: int, task: Task) -> None:
         del self._queued[number]
         for level in task.levels:
             level.motions.discard(number)
 
-    def _handle_output(self, event: CoreEvent, command: OutputCommand) -> None:
-        trigger = self._outputs.get(command)
-        if trigger is None or event.what == "started":
-            return
-        state = self._state
-        del self._outputs[command]
+    def _handle_output(self, event: CoreEvent, command: OutputCommand, trigger: SetTrigger) -> None:
+        state, fault = self._state, event.fault
+        if fault is not None:
+            state.messages.post("robot", trigger.at, fault.number or 0, fault.text)
         if event.what != "ended":
-            if event.fault is not None:
-                state.messages.post("robot", trigger.at, event.fault.number or 0, event.fault.text)
             return
         state.trace.record(
             "robot",
@@ -413,9 +385,6 @@ class MotionQueue:
                 state.signal_changed(name, place, value)
         state.changed(command.path, command.value)
 
-    def _fire(self, command: CallCommand) -> None:
-        trigger = self._calls.pop(command, None)
-        if trigger is None:
-            return
+    def _fire(self, command: CallCommand, trigger: SetTrigger) -> None:
         self._state.trace.record("robot", "trigger", trigger.at, priority=trigger.priority)
         self.fired.append(command)

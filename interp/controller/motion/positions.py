@@ -13,6 +13,7 @@ from functools import cached_property, partial
 from itertools import chain, repeat
 from typing import TYPE_CHECKING, Any, Final
 
+from interp.controller.motion.follower import Follower
 from interp.controller.state.state import ControllerState
 from interp.controller.state.variables import Computed, Snapshot, Variables
 from interp.port.requests import Path, Value
@@ -35,7 +36,6 @@ from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.kinematics import Kinematics
-    from interp.robot.simulation.tracking import Tracking
 
 #: Degrees or mm by which an axis may miss a home position in addition to its tolerance.
 _HOME: Final = 1e-3
@@ -82,7 +82,7 @@ class FramesInForce:
     """$BASE, $TOOL, $ROBROOT and $IPO_MODE, in the advance run and in the main run."""
 
     _variables: Variables
-    _machine: MachineData | None
+    _machine: MachineData
     _core: ControlCore
     #: The frame that EK returned last, and the kinematic system that carries it.
     _coupled: tuple[Pose, Carrier] | None = None
@@ -100,7 +100,7 @@ class FramesInForce:
             pose_of(values["$TOOL"]) or IDENTITY,
             self._robroot(),
             IpoMode(word_of(values["$IPO_MODE"])),
-            None if self._machine is None else self._machine.carrier,
+            self._machine.carrier,
             table if base == given else None,
         )
 
@@ -117,13 +117,13 @@ class FramesInForce:
         found = pose_of(self._variables.read(("$ROBROOT",)))
         if found not in (None, IDENTITY):
             return found
-        return IDENTITY if self._machine is None else self._machine.robroot
+        return self._machine.robroot
 
 
 class Positions:
     """The present position of the arm, its measured position, and those at certain events.
 
-    ``tracking`` measures the position, if there is a robot.
+    ``follower`` measures the position.
     """
 
     def __init__(
@@ -131,12 +131,12 @@ class Positions:
         state: ControllerState,
         core: ControlCore,
         frames: FramesInForce,
-        tracking: Tracking | None,
+        follower: Follower,
     ) -> None:
         self._clock = state.clock
         self._arm = core.arm
         self._frames = frames
-        self._tracking = tracking
+        self._follower = follower
         self._machine = state.machine
         self._kept: dict[str, Position] = {}
         shown: Mapping[str, tuple[str, str, Callable[[], Position]]] = {
@@ -158,8 +158,8 @@ class Positions:
             variables.connect([pose], Computed(partial(self._point_at, position)))
 
     @cached_property
-    def _kinematics(self) -> Kinematics | None:
-        return None if self._machine is None else kinematics_of(self._machine)
+    def _kinematics(self) -> Kinematics:
+        return kinematics_of(self._machine)
 
     def actual(self) -> Position:
         """Return the present set-point."""
@@ -175,9 +175,7 @@ class Positions:
         return self._kept[name]
 
     def _measured(self) -> Position:
-        if self._tracking is None or self._kinematics is None:
-            return self.actual()
-        axes = self._tracking.measured(self._clock.now)
+        axes = self._follower.measured(self._clock.now)
         flange = Pose.from_matrix(self._kinematics.forward(axes[:ROBOT_AXES]).tolist())
         return Position(axes, flange)
 
@@ -190,12 +188,11 @@ class Positions:
         return pose_value(point, status, turn, externals)
 
     def status_turn(self, axes: Sequence[float]) -> tuple[int, int]:
-        """Return Status and Turn of axes in degrees; Status is 0 if there is no machine data."""
+        """Return Status and Turn of axes in degrees."""
         from interp.robot.kinematics.solution_choice import turn_of
 
         robot = axes[:ROBOT_AXES]
-        status = 0 if self._kinematics is None else int(self._kinematics.status(robot))
-        return status, turn_of(robot)
+        return int(self._kinematics.status(robot)), turn_of(robot)
 
     def _is_home(self, home: Path, tolerance: Path) -> Value:
         """Return whether all axes that a home position names are within their tolerance."""
@@ -204,7 +201,7 @@ class Positions:
         names = [member.name for member in wanted.type.members]
         for name, axis in zip(names, self.actual().axes, strict=False):
             value = wanted.get(name)
-            if value is not None and abs(axis - value) > abs(allowed.get(name) or 0.0) + _HOME:
+            if value is not None and abs(axis - value) > (allowed.get(name) or 0.0) + _HOME:
                 return False
         return True
 

@@ -37,7 +37,6 @@ class MotionRequests:
         assert isinstance(advance, int)
         if not advance:
             self._queue.stop_advance()
-            self._queue.release()
         return Blocked(request, lambda: self._queue.own_pending(task) <= advance, lambda: None)
 
     def _replaces(
@@ -65,7 +64,7 @@ class MotionRequests:
         self._queue.is_coincidence_run = True
         messages = self._state.messages
         messages.post_number(request.at, 309, "state")
-        self._queue.release()
+        self._queue.stop_advance()
 
         def reached() -> None:
             self._queue.is_coincidence_run = False

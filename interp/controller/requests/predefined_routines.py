@@ -7,6 +7,7 @@ routines stop the advance run is data (`grammar.semantics.predefined`) [ADV-04, 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 from grammar.semantics.predefined import PredefinedFunction, System
@@ -29,7 +30,6 @@ from interp.port.requests import Invoke, Path, Value
 from interp.robot.arm import Target
 from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
-from interp.robot.kinematics.placement import Placement
 from interp.values.faults import Fault, fault
 from interp.values.poses import Pose
 from interp.values.predefined_values import empty_structure
@@ -74,7 +74,6 @@ class PredefinedRoutines:
         self._frames = frames
         self._channels = channels
         self._advance = advance
-        self._solver: Kinematics | None = None
         self._functions = System.load(state.profile.release).functions
         self._newest = System.load().functions
 
@@ -255,7 +254,7 @@ class PredefinedRoutines:
         axes_given, *_ = request.arguments
         target = target_of(known(axes_given))
         axes = _components(target, AXIS_NAMES)
-        kinematics, placement = self._kinematics()
+        kinematics, placement = self._kinematics, self._frames.advance_run()
         flange = Pose.from_matrix(kinematics.forward(axes).tolist())
         status = int(kinematics.status(axes))
         externals = _externals(target)
@@ -267,7 +266,7 @@ class PredefinedRoutines:
         from interp.robot.kinematics.solution_choice import solve
 
         target, start = (target_of(known(one)) for one in request.arguments[:2])
-        kinematics, placement = self._kinematics()
+        kinematics, placement = self._kinematics, self._frames.advance_run()
         point = Pose.of(*_components(target, "XYZABC"))
         externals = _externals(target)
         origin = _components(start, AXIS_NAMES)
@@ -292,10 +291,10 @@ class PredefinedRoutines:
         """
         root, offset = (pose_of(known(request.arguments[place])) for place in (0, 2))
         machine = self._state.machine
-        system = None if machine is None else machine.tables.get(word_of(request.arguments[1]))
+        system = machine.tables.get(word_of(request.arguments[1]))
         if root is None or offset is None:
             raise fault("uninitialised")
-        if machine is None or system is None:
+        if system is None:
             return self._unsupported(task, request, self._newest["EK"])
         table = system.with_frames(root, offset)
         position = self._arm.core.arm.position(self._state.clock.now)
@@ -307,12 +306,9 @@ class PredefinedRoutines:
         self._frames.couple(Pose.of(*numbers), table)
         return frame, {}
 
-    def _kinematics(self) -> tuple[Kinematics, Placement]:
-        if self._solver is None:
-            if self._state.machine is None:
-                raise own_fault("unsupported")
-            self._solver = kinematics_of(self._state.machine)
-        return self._solver, self._frames.advance_run()
+    @cached_property
+    def _kinematics(self) -> Kinematics:
+        return kinematics_of(self._state.machine)
 
     # ---------------------------------------------------------------------------------- others
 

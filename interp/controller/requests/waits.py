@@ -106,21 +106,57 @@ class Waits:
 
     def poll(self, task: Task, request: Poll) -> Answer:
         """WAIT FOR: let the program evaluate its condition again in the next slice."""
+        self._state.trace.polled(task.name, request.at, request.is_first)
         if request.is_first:
-            task.polling = None
             self._automatic.begin(task.name)
             return self._advance.when_reached(task, request, lambda: None)
-        if task.polling != request.at:
-            task.polling = request.at
-            self._state.trace.record(task.name, "wait", request.at)
         self._automatic.was_false(task.name, request.at)
         return self.until(request, self.next_slice(task), lambda: None)
 
-    def requests_left(self, task: Task, most: int) -> int:
+    # ----------------------------------------------------------------------------- slices
+
+    def is_one_too_many(self, task: Task, request: Request) -> bool:
+        """Count a request, and return whether it must wait for the next slice.
+
+        What computes a cyclic signal may make any number.
+        """
+        if task.level is not None and task.level.signal is not None:
+            return False
+        end = self.next_slice(task)
+        if task.slice_end != end:
+            task.slice_end, task.spent = end, 0
+        task.spent += request.count if isinstance(request, StopAdvance) else 1
+        return task.spent > self.requests_left(task)
+
+    def postponed(self, task: Task, request: Request, then: Callable[[], Answer]) -> Blocked:
+        """Return a wait until the next slice, because a request is one too many in this one."""
+        late = self.until(request, task.slice_end, then)
+        late.is_postponed = True
+        if self.is_idle(task):
+            task.executor.waited()
+        return late
+
+    def passed(self, task: Task, request: Request) -> Answer:
+        """Return the reply to a request that has none.
+
+        If it only stops the advance run, that is how many such requests the program need not make:
+        nothing is ahead of it, until it makes another request.
+        """
+        if not isinstance(request, StopAdvance) or task.exempt_line is not None:
+            return None
+        return self._most(task) - task.spent
+
+    def _most(self, task: Task) -> int:
+        """Return how many requests a program may make in a slice."""
+        profile = self._state.profile
+        return profile.requests if task.name == "robot" else profile.submit_requests
+
+    def requests_left(self, task: Task) -> int:
         """Return how many requests a program may make in this slice.
 
         These are few if it is in a loop that waits until something changes, or in an endless loop.
         """
+        most = self._most(task)
         is_limited = self.is_idle(task) or task.unbroken >= _ENDLESS
         return min(most, _IDLE_REQUESTS) if is_limited and task.level is None else most
 
@@ -128,19 +164,31 @@ class Waits:
         """Return whether a program has changed nothing for some time."""
         return self._state.clock.now - task.busy_at >= IDLE_AFTER
 
-    def waited(self, task: Task, blocked: Blocked) -> None:
-        """Note that a program has waited: it is in no endless loop, unless it only polled."""
+    @property
+    def changes(self) -> tuple[int, int]:
+        """How often programs have changed a system variable or a signal, and where the arm goes."""
+        changes = self._state.variables.activity.changes - self._automatic.count
+        return changes, len(self._queue.points)
+
+    def waited(self, task: Task, blocked: Blocked, before: tuple[int, int]) -> None:
+        """Note that a program has waited: it is in no endless loop, unless it only polled.
+
+        ``before`` are the `changes` before the request was answered.
+        """
         if blocked.wake is None or isinstance(blocked.request, Wait | Poll):
             task.busy_at = self._state.clock.now
             if not blocked.is_postponed:
                 task.unbroken = 0
                 task.executor.waited()
+        if self.changes != before:
+            self.acted(task, blocked.request, before)
 
-    def acted(self, task: Task, request: Request, *, has_changed: bool) -> None:
-        """Note that a request was answered, which may have changed something.
+    def acted(self, task: Task, request: Request, before: tuple[int, int]) -> None:
+        """Note that a request was answered, before which the `changes` were ``before``.
 
         Raises `BudgetExhausted` if the robot's program is in an endless loop.
         """
+        has_changed = self.changes != before
         catches = isinstance(request, Write) and request.path[0] == "$ERR"
         if has_changed or catches or not isinstance(request, (*_LOOKS, Write)):
             task.busy_at = self._state.clock.now
@@ -176,7 +224,6 @@ class Waits:
 
         if task.name == "submit":
             return halted()
-        self._queue.release()
         self._queue.stop_advance()
         has_braked = any(level.has_braked for level in task.levels)
 

@@ -46,35 +46,22 @@ class Clock:
         return math.ceil((self.now + duration) / self.cycle) * self.cycle
 
 
-@dataclass(slots=True, eq=False)
-class TimedAction:
-    """An action to be performed once at ``time`` in µs, unless it is cancelled."""
-
-    time: int
-    action: Callable[[], None]
-    is_cancelled: bool = False
-
-
 @dataclass(slots=True)
 class ActionQueue:
     """Timed actions in order of their times; those of equal time in order of addition."""
 
-    _entries: list[tuple[int, int, TimedAction]] = field(default_factory=list)
+    _entries: list[tuple[int, int, Callable[[], None]]] = field(default_factory=list)
     _order: count[int] = field(default_factory=count)
 
-    def add(self, time: int, action: Callable[[], None]) -> TimedAction:
-        """Add an action at a time in µs, and return it."""
-        made = TimedAction(time, action)
-        heapq.heappush(self._entries, (time, next(self._order), made))
-        return made
+    def add(self, time: int, action: Callable[[], None]) -> None:
+        """Add an action at a time in µs."""
+        heapq.heappush(self._entries, (time, next(self._order), action))
 
     def next_time(self) -> int | None:
         """Return the time of the next action in µs; ``None`` if there is none."""
-        while self._entries and self._entries[0][2].is_cancelled:
-            heapq.heappop(self._entries)
         return self._entries[0][0] if self._entries else None
 
     def run_until(self, now: int) -> None:
         """Perform all actions that are due."""
         while (time := self.next_time()) is not None and time <= now:
-            heapq.heappop(self._entries)[2].action()
+            heapq.heappop(self._entries)[2]()

@@ -9,25 +9,34 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
-from typing import Final
+from dataclasses import dataclass
+from typing import Any, Final
 
 from grammar.semantics.types import BOOL, REAL
-from interp.controller.state.clock import Clock, TimedAction
+from interp.controller.state.clock import Clock
 from interp.controller.state.profile import Profile
 from interp.port.requests import Path, Value
 from interp.values.faults import fault
 from interp.values.values import converted, index, single
 
-ALWAYS_TRUE: Final = 1025
-ALWAYS_FALSE: Final = 1026
+#: Inputs that have always the same value.
+_FIXED: Final = {("$IN", 1025): True, ("$IN", 1026): False}
+#: The values at the start, by arrays of signals.
+_INITIAL: Final = {"$IN": False, "$OUT": False, "$ANIN": 0.0, "$ANOUT": 0.0}
 _SHORTEST: Final = 0.1
 _LONGEST: Final = 3.0
 
 #: A change of a signal: the array, the index, the new value.
 Change = tuple[str, int, Value]
 Report = Callable[[str, int, Value], None]
-Later = Callable[[int, Callable[[], None]], TimedAction]
+Later = Callable[[int, Callable[[], None]], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Pulse:
+    """A pulse that holds an output at a level."""
+
+    level: bool
 
 
 class Signals:
@@ -38,30 +47,26 @@ class Signals:
 
     def __init__(self, profile: Profile, clock: Clock, later: Later, report: Report) -> None:
         sizes = profile.sizes
-        self._digital = {
-            "$IN": [False] * (sizes["inputs"] + 1),
-            "$OUT": [False] * (sizes["outputs"] + 1),
+        self._sizes = {
+            "$IN": sizes["inputs"],
+            "$OUT": sizes["outputs"],
+            "$ANIN": sizes["analog_inputs"],
+            "$ANOUT": sizes["analog_outputs"],
         }
-        self._analog = {
-            "$ANIN": [0.0] * (sizes["analog_inputs"] + 1),
-            "$ANOUT": [0.0] * (sizes["analog_outputs"] + 1),
-        }
-        if sizes["inputs"] >= ALWAYS_TRUE:
-            self._digital["$IN"][ALWAYS_TRUE] = True
+        #: The values of the signals that have changed, and of those that never do.
+        self._values: dict[tuple[str, int], Any] = {**_FIXED}
         self._clock = clock
         self._later = later
         self._report = report
-        self._pulses: dict[int, tuple[bool, TimedAction]] = {}
+        self._pulses: dict[tuple[str, int], _Pulse] = {}
 
     def read(self, path: Path) -> Value:
         """Return the value of a signal or of a group; faults ``index``."""
-        name, first, last = self._range(path)
-        if name in self._analog:
-            return self._analog[name][first]
-        bits = self._digital[name]
-        if len(path) == 2:
-            return bits[first]
-        number = sum(bits[place] << (place - first) for place in range(first, last + 1))
+        name, places = self._range(path)
+        values = [self._values.get((name, place), _INITIAL[name]) for place in places]
+        if "TO" not in path:
+            return values[0]
+        number = sum(value << bit for bit, value in enumerate(values))
         return number - 2**32 if number >= 2**31 else number
 
     def write(self, path: Path, value: Value) -> None:
@@ -72,15 +77,16 @@ class Signals:
 
     def put(self, path: Path, value: Value) -> None:
         """Set a signal; from outside this may be an input too."""
-        name, first, last = self._range(path)
-        if name in self._analog:
-            self._put_analog(name, first, value)
-        elif len(path) == 2:
-            self._put_bit(name, first, converted(value, BOOL) is True)
-        else:
+        name, places = self._range(path)
+        if "TO" in path:
             number = index(value)
-            for place in range(first, last + 1):
-                self._put_bit(name, place, bool(number >> (place - first) & 1))
+            for bit, place in enumerate(places):
+                self._put_bit(name, place, number >> bit & 1 == 1)
+        elif name in ("$ANIN", "$ANOUT"):
+            level: Any = converted(value, REAL)
+            self._set(name, places[0], single(min(max(level, -1.0), 1.0)))
+        else:
+            self._put_bit(name, places[0], converted(value, BOOL))
 
     def pulse(self, number: int, level: bool, seconds: float) -> None:
         """PULSE: set an output to a level for a time in s, then to the other level [IOT-07].
@@ -89,12 +95,14 @@ class Signals:
         the time. Setting the other level meanwhile ends the pulse.
         """
         tenths = min(max(round(seconds * 10) / 10, _SHORTEST), _LONGEST)
-        self._end_pulse(number)
         self.put(("$OUT", number), level)
-        end = self._clock.tick_after(round(tenths * 1_000_000))
+        pulse = self._pulses["$OUT", number] = _Pulse(level)
 
-        over = partial(self.put, ("$OUT", number), not level)  # ends the pulse too
-        self._pulses[number] = level, self._later(end, over)
+        def end() -> None:
+            if self._pulses.get(("$OUT", number)) is pulse:
+                self._put_bit("$OUT", number, not level)
+
+        self._later(self._clock.tick_after(round(tenths * 1_000_000)), end)
 
     @contextmanager
     def deferred(self) -> Iterator[list[Change]]:
@@ -106,38 +114,28 @@ class Signals:
         finally:
             self._report = before
 
-    def _end_pulse(self, number: int) -> None:
-        running = self._pulses.pop(number, None)
-        if running is not None:
-            running[1].is_cancelled = True
-
-    def _put_bit(self, name: str, place: int, value: bool) -> None:
-        if name == "$IN" and place in (ALWAYS_TRUE, ALWAYS_FALSE):
+    def _put_bit(self, name: str, place: int, value: Any) -> None:
+        if (name, place) in _FIXED:
             return
-        if name == "$OUT" and place in self._pulses and self._pulses[place][0] != value:
-            self._end_pulse(place)
-        if self._digital[name][place] != value:
-            self._digital[name][place] = value
+        pulse = self._pulses.get((name, place))
+        if pulse is not None and pulse.level != value:
+            del self._pulses[name, place]
+        self._set(name, place, value)
+
+    def _set(self, name: str, place: int, value: Value) -> None:
+        if self._values.get((name, place), _INITIAL[name]) != value:
+            self._values[name, place] = value
             self._report(name, place, value)
 
-    def _put_analog(self, name: str, place: int, value: Value) -> None:
-        number = converted(value, REAL)
-        assert isinstance(number, float), "converted"
-        number = single(min(max(number, -1.0), 1.0))
-        if self._analog[name][place] != number:
-            self._analog[name][place] = number
-            self._report(name, place, number)
-
-    def _range(self, path: Path) -> tuple[str, int, int]:
-        """Return the array and the first and last index of a path."""
-        name = str(path[0])
-        size = len(self._digital.get(name) or self._analog[name]) - 1
-        if len(path) == 2 and isinstance(path[1], int):
-            first = last = path[1]
-        elif len(path) == 4 and isinstance(path[1], int) and isinstance(path[3], int):
-            first, last = path[1], path[3]
-        else:
-            raise fault("inadmissible")
-        if not 1 <= first <= last <= size or last - first >= 32:
+    def _range(self, path: Path) -> tuple[str, range]:
+        """Return the array and the indices of a signal or of a group."""
+        match path:
+            case (str() as name, int() as first):
+                last = first
+            case (str() as name, int() as first, "TO", int() as last):
+                pass
+            case _:
+                raise fault("inadmissible")
+        if not 1 <= first <= last <= self._sizes[name]:
             raise fault("index")
-        return name, first, last
+        return name, range(first, last + 1)

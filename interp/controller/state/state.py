@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Final
 
-from interp.controller.state.clock import ActionQueue, Clock, TimedAction
+from interp.controller.state.clock import ActionQueue, Clock
 from interp.controller.state.messages import Messages
 from interp.controller.state.profile import Profile
 from interp.controller.state.signals import Signals
@@ -33,7 +33,7 @@ class ControllerState:
         self,
         profile: Profile,
         trace: Trace,
-        machine: MachineData | None,
+        machine: MachineData,
         values: Mapping[str, Value],
     ) -> None:
         self.profile = profile
@@ -48,9 +48,7 @@ class ControllerState:
         self.timers = Timers(self.clock, profile.sizes["timers"])
         self.variables.connect(["$TIMER", "$TIMER_STOP", "$TIMER_FLAG"], self.timers)
         self.observers: list[Callable[[Path, Value], None]] = []
-        self.program_states: dict[TaskName, str] = {"robot": "P_RESET", "submit": "P_FREE"}
-        #: The number of changes of signals.
-        self.signals_changed = 0
+        self.program_states: dict[TaskName, str] = {"robot": "P_ACTIVE", "submit": "P_FREE"}
         #: Statements that failed and were skipped, each with the reason of its first failure.
         self.skipped: dict[tuple[str, int], Exception] = {}
 
@@ -95,7 +93,7 @@ class ControllerState:
 
     def signal_changed(self, name: str, place: int, value: Value) -> None:
         """Record a change of a signal in the trace, and notify the observers."""
-        self.signals_changed += 1
+        self.variables.activity.changes += 1
         self.trace.record_change(
             _SIGNAL_KINDS[name], signal=name, number=place, value=to_json(value)
         )
@@ -105,7 +103,7 @@ class ControllerState:
         for observer in self.observers:
             observer(path, value)
 
-    def later(self, time: int, action: Callable[[], None]) -> TimedAction:
+    def later(self, time: int, action: Callable[[], None]) -> None:
         """Schedule an action at a time in µs, on behalf of the line that is executed now."""
         origin = self.trace.origin
 
@@ -113,4 +111,4 @@ class ControllerState:
             with self.trace.attributed(*origin):
                 action()
 
-        return self.actions.add(time, act)
+        self.actions.add(time, act)

@@ -83,8 +83,8 @@ class Task:
     ``spent`` is the number of requests in the slice that ends at ``slice_end``. ``unbroken`` is the
     number of requests since the program last waited for time, a condition or the arm. ``triggers``
     wait for the next motion. ``busy_at`` is the time in µs at which the program last did more than
-    read variables and write the values that they had. ``polling`` is the place of a waiting WAIT
-    FOR, ``at`` the place that the program has reached. ``counting`` and ``recurrent`` are the
+    read variables and write the values that they had. ``at`` is the place that the program has
+    reached. ``counting`` and ``recurrent`` are the
     executor if it has that protocol; checking each time would take longer than a slice.
     """
 
@@ -99,7 +99,6 @@ class Task:
     spent: int = 0
     unbroken: int = 0
     slice_end: int = -1
-    polling: At | None = None
     at: At = field(default_factory=lambda: At("", 0, 0))
     busy_at: int = 0
     triggers: list[SetTrigger] = field(default_factory=list)

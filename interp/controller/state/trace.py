@@ -98,12 +98,22 @@ class Trace:
         self.count = 0
         self.kinds = kinds
         self.origin: tuple[TaskName, At | None] = ("robot", None)
+        #: The WAIT FOR of each task whose waiting is recorded.
+        self._waiting: dict[TaskName, At] = {}
         self._take = take or self.events.append
 
     def record(self, task: TaskName, kind: str, at: At | None, **fields: Any) -> None:
         """Record an event that happens now."""
         self.count += 1
         self._take(TraceEvent(self.now, task, kind, at, fields))
+
+    def polled(self, task: TaskName, at: At, is_first: bool) -> None:
+        """Record that a program waits for a condition, when it was FALSE for the first time."""
+        if is_first:
+            self._waiting.pop(task, None)
+        elif self._waiting.get(task) != at:
+            self._waiting[task] = at
+            self.record(task, "wait", at)
 
     def record_change(self, kind: str, **fields: Any) -> None:
         """Record a change that `origin` has caused."""

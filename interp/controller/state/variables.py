@@ -12,12 +12,12 @@ the ``_C`` variables take the values of its snapshot.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from functools import cache, lru_cache
-from math import prod
+from functools import cache, lru_cache, reduce
 from typing import Any, Final, Protocol
 
 from grammar.semantics.predefined import System, SystemVariable
 from grammar.semantics.types import INT, UNKNOWN, Array, Structure, Type
+from interp.controller.state.activity import Activity
 from interp.controller.state.profile import Profile, ProfileError
 from interp.port.requests import Path, Value
 from interp.values.faults import Fault, LinkError, fault
@@ -29,6 +29,7 @@ from interp.values.values import (
     copied,
     empty,
     fill,
+    known,
     zero,
 )
 from support.lazy_dataclass import dataclass
@@ -66,21 +67,10 @@ class Computed:
         raise fault("read_only")
 
 
-#: `Live` variables that change only when an event happens, not with time alone.
-_STEADY: Final = frozenset(
-    "$IN $OUT $ANIN $ANOUT $OUT_C $STOPMESS $PRO_STATE $PRO_STATE0 $PRO_STATE1 $PRO_ACT "
-    "$NUM_IN $NUM_OUT $NULLFRAME $I_O_ACTCONF $T1 $T2 $AUT $EXT".split()
-)
-#: Variables whose changes are events of the trace.
-_SIGNALS: Final = frozenset({"$IN", "$OUT", "$ANIN", "$ANOUT"})
-
-
 class Variables:
     """All system variables, by their names in upper case.
 
-    ``writes`` counts the assignments that changed a value, except those to signals, which report
-    their changes themselves. ``has_read_changing`` is set when a variable is read that changes with
-    time alone; the user of this class clears it.
+    ``activity`` is what programs do to them.
     """
 
     def __init__(self, profile: Profile, given: Mapping[str, Value] | None = None) -> None:
@@ -90,8 +80,7 @@ class Variables:
         self._values: dict[str, Any] = {}
         self._live: dict[str, Live] = {}
         self._untyped_parts: dict[Path, Value] = {}
-        self.writes = 0
-        self.has_read_changing = False
+        self.activity = Activity()
         self._twins = _twins()
         self._with_twins = frozenset(self._twins.values())
         self._snapshot: Snapshot | None = None
@@ -144,8 +133,8 @@ class Variables:
 
     def size(self, name: str) -> int:
         """Return the number of elements of an array; 1 for any other variable."""
-        type_ = self.type_of(name)
-        return prod(size or 1 for size in type_.sizes) if isinstance(type_, Array) else 1
+        root = self._root(name)
+        return len(root) if isinstance(root, ArrayValue) else 1
 
     # ------------------------------------------------------------------------------- the values
 
@@ -159,7 +148,7 @@ class Variables:
         name = str(path[0])
         live = self._live.get(name)
         if live is not None:
-            self.has_read_changing = self.has_read_changing or name not in _STEADY
+            self.activity.read(name)
             return live.read(path)
         if self._is_untyped_part(path):
             return self._untyped_parts.get(path, 0)
@@ -182,24 +171,21 @@ class Variables:
                 raise fault("invalid")
         live = self._live.get(name)
         if live is not None:
-            self.writes += name not in _SIGNALS
+            self.activity.wrote(name)
             live.write(path, value)
             return
         if self._is_untyped_part(path):
-            self.writes += 1
+            self.activity.stored(self._untyped_parts.get(path), value)
             self._untyped_parts[path] = copied(value)
             return
-        before = self._parts(path)
+        before = self._part(path)
         self._store(path, value)
-        self.writes += before is None or before != self._parts(path)
+        self.activity.stored(before, self._part(path))
 
-    def _parts(self, path: Path) -> Any:
-        """Return the parts of a value as texts, so that 0.0 and -0.0 differ, and 1 and TRUE.
-
-        ``None`` if it has none.
-        """
+    def _part(self, path: Path) -> Value | None:
+        """Return a copy of a stored value or of a part of it; ``None`` if it has none."""
         try:
-            return _texts(part(self._root(str(path[0])), path[1:]))
+            return part(self._root(str(path[0])), path[1:])
         except Fault:
             return None
 
@@ -220,11 +206,8 @@ class Variables:
         changed: dict[str, Any] = {}
         for path, value in changes:
             name = str(path[0])
-            if name not in changed:
-                changed[name] = copied(self._root(name))
-            holder = _Holder(changed[name], self.type_of(name))
-            holder.put(path[1:], value)
-            changed[name] = holder.root
+            root = changed[name] if name in changed else copied(self._root(name))
+            changed[name] = self._changed(name, root, path[1:], value)
         return {**self._snapshot, **changed} if changed else self._snapshot
 
     def _store(self, path: Path, value: Value) -> None:
@@ -232,9 +215,19 @@ class Variables:
         if name in self._with_twins:  # existing snapshots keep the old value
             self._values[name] = copied(self._root(name))
             self._snapshot = None
-        holder = _Holder(self._root(name), self.type_of(name))
-        holder.put(path[1:], value)
-        self._values[name] = holder.root
+        self._values[name] = self._changed(name, self._root(name), path[1:], value)
+
+    def _changed(self, name: str, root: Any, steps: Path, value: Value) -> Any:
+        """Return what a variable holds after an assignment to it or to a part of it."""
+        if steps:
+            _put(root, steps, value)
+            return root
+        if isinstance(root, StructureValue | ArrayValue):
+            whole = copied(root)
+            fill(whole, value)
+            return whole
+        type_ = self.type_of(name)
+        return copied(value) if type_ == UNKNOWN else converted(value, type_)
 
     def _root(self, name: str) -> Any:
         if name not in self._values:
@@ -266,97 +259,34 @@ def _twins() -> Mapping[str, str]:
     return {one.twin: name for name, one in System.load().variables.items() if one.twin}
 
 
-def _texts(value: Value | None) -> Any:
-    match value:
-        case StructureValue():
-            return [_texts(member) for member in value.members]
-        case ArrayValue():
-            return [_texts(element) for element in value]
-    return repr(value)
+def part(value: Any, steps: Path) -> Value:
+    """Return a copy of a part of a value; faults ``uninitialised``, ``index``."""
+    found: Value = copied(known(reduce(_step, steps, value)))
+    return found
 
 
-@dataclass(slots=True)
-class _Holder:
-    """A value of a type, in which a part is replaced."""
-
-    root: Any
-    type: Type
-
-    def put(self, steps: Path, value: Value) -> None:
-        """Assign a value, converted and copied, to the part that ``steps`` lead to."""
-        if not steps:
-            self.root = self._whole(value)
-            return
-        parent: Any = self.root
-        place = 0
-        while place < len(steps) - 1 and not _is_rest(parent, steps[place:]):
-            parent, place = _step(parent, steps, place)
-        last = steps[place:]
-        if isinstance(parent, ArrayValue) and all(isinstance(one, int) for one in last):
-            self._put_element(parent, [one for one in last if isinstance(one, int)], value)
-        elif isinstance(parent, StructureValue) and isinstance(last[0], str):
-            self._put_member(parent, last[0], value)
-        else:
-            raise fault("inadmissible")
-
-    def _whole(self, value: Value) -> Any:
-        if isinstance(self.root, StructureValue | ArrayValue):
-            whole = copied(self.root)
-            fill(whole, value)
-            return whole
-        return copied(value) if self.type == UNKNOWN else converted(value, self.type)
-
-    @staticmethod
-    def _put_element(array: ArrayValue, indices: list[int], value: Value) -> None:
-        if len(indices) < len(array.sizes):
-            fill(array.part(*indices), value)
-            return
-        old = array.get(*indices)
-        if isinstance(old, StructureValue | ArrayValue):
-            fill(old, value)
-        else:
-            array.set(converted(value, array.type.element), *indices)
-
-    @staticmethod
-    def _put_member(structure: StructureValue, name: str, value: Value) -> None:
-        type_ = structure.type.member(name)
-        if type_ is None:
-            raise fault("inadmissible")
-        old = structure.get(name)
-        if isinstance(old, StructureValue | ArrayValue):
-            fill(old, value)
-        else:
-            structure.set(name, converted(value, type_))
-
-
-def _is_rest(parent: Any, steps: Path) -> bool:
-    """Return whether all steps that remain are indices of one array."""
-    return isinstance(parent, ArrayValue) and len(steps) <= len(parent.sizes)
-
-
-def _step(parent: Any, steps: Path, place: int) -> tuple[Any, int]:
-    """Go one step into a value, to a member or an element; return it and the next place."""
-    step = steps[place]
-    if isinstance(parent, StructureValue) and isinstance(step, str) and parent.type.member(step):
-        return parent.get(step), place + 1
-    if isinstance(parent, ArrayValue):
-        indices = [one for one in steps[place : place + len(parent.sizes)] if isinstance(one, int)]
-        if len(indices) == len(parent.sizes):
-            return parent.get(*indices), place + len(indices)
-        if indices:
-            return parent.part(*indices), place + len(indices)
+def _step(whole: Any, step: str | int) -> Any:
+    """Return a member, an element, or a part of an array without its first dimension."""
+    match whole, step:
+        case StructureValue(), str() if whole.type.member(step) is not None:
+            return whole.get(step)
+        case ArrayValue(), int():
+            return whole.get(step) if len(whole.sizes) == 1 else whole.part(step)
     raise fault("uninitialised")
 
 
-def part(value: Any, steps: Path) -> Value:
-    """Return a copy of a part of a value; faults ``uninitialised``, ``index``."""
-    place = 0
-    while place < len(steps):
-        value, place = _step(value, steps, place)
-    if value is None:
-        raise fault("uninitialised")
-    found: Value = copied(value)
-    return found
+def _put(root: Any, steps: Path, value: Value) -> None:
+    """Assign a value, converted and copied, to the part that ``steps`` lead to."""
+    last: Any
+    *way, last = steps
+    whole = reduce(_step, way, root)
+    old = _step(whole, last)
+    if isinstance(old, StructureValue | ArrayValue):
+        fill(old, value)
+    elif isinstance(whole, ArrayValue):
+        whole.set(converted(value, whole.type.element), last)
+    else:
+        whole.set(last, converted(value, whole.type.member(last)))
 
 
 def _zero(type_: Type) -> Any:

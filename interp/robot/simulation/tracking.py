@@ -97,10 +97,10 @@ class Tracking:
         if observer is not None:
             observer.observe(self._times[0], self._axes[0])
 
-    @property
-    def chunk(self) -> int | None:
-        """The longest time in µs between calls of `advance`; ``None`` if nothing is sent."""
-        return self._robot.chunk if self._robot.step else None
+    def next_time(self, now: int) -> int | None:
+        """Return when `advance` must be called next, in µs; ``None`` if nothing new is sent."""
+        moves = self._robot.step and self._arm.next_event() is not None
+        return now + self._robot.chunk if moves else None
 
     def begun(self, time: int, motion: Motion) -> None:
         """Note that a motion begins: its frames and loads are in force from now on."""

@@ -21,6 +21,7 @@ from interp.port.events import EVERY_KIND
 from interp.program.load import Limits, load
 from interp.robot.api.control_core import ControlCore
 from interp.robot.arm import ArmEvent, Motion, Position, Samples
+from interp.robot.models import default_machine
 from interp.values.faults import Fault
 from interp.values.poses import IDENTITY
 
@@ -312,6 +313,7 @@ def made(
         sink=sink,
         submit=beside,
         submit_sink=beside_sink,
+        machine=default_machine(),
         **more,
     )
     return controller, trace, arm

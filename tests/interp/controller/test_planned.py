@@ -34,7 +34,7 @@ class Ran:
         self,
         text: str,
         script: str = "",
-        tracking: Any = None,
+        follower: Any = None,
         until: int = 60_000_000,
     ) -> None:
         machine = default_machine()
@@ -50,7 +50,7 @@ class Ran:
             trace=trace,
             sink=sink,
             machine=machine,
-            tracking=tracking,
+            follower=follower,
         )
         self.outcome = self.controller.run(until)
         self.events = trace.events
@@ -132,6 +132,10 @@ class Colliding:
         """The frames of a motion."""
         self.placements.append((time, motion.settings.placement))
 
+    def next_time(self, now: int) -> int:
+        """When `advance` must be called."""
+        return now + self.chunk
+
     def settle(self, _now: int) -> None:
         """All is sent."""
 
@@ -139,7 +143,7 @@ class Colliding:
 def test_robot_that_cannot_go_on() -> None:
     """A fault of the robot stops the arm hard and ends the program at the running motion."""
     robot = Colliding()
-    ran = Ran(program("$VEL.CP=0.05\nLIN {Y -100}\n"), tracking=robot)
+    ran = Ran(program("$VEL.CP=0.05\nLIN {Y -100}\n"), follower=robot)
     assert ("fault", "collision") == (ran.outcome.ending, ran.outcome.error.slug)  # type: ignore[union-attr]
     assert 9 == ran.outcome.at.line  # type: ignore[union-attr]
     assert 1_000_000 <= ran.times("fault")[0] <= 1_000_000 + robot.chunk
