@@ -58,8 +58,8 @@ class Unread:
 
 
 @dataclass(frozen=True, slots=True)
-class Trial:
-    """The result of a routine.
+class RoutineResult:
+    """How far a routine gets, and how it runs.
 
     ``reason`` says why it got no further than ``stage``, and ``why`` how its run ended. ``endings``
     are those of its runs by executor, the reference first. ``differences`` are the differences from
@@ -76,12 +76,12 @@ class Trial:
     why: str = ""
 
 
-def trials(
+def routine_results(
     sources: Iterable[Source],
     executors: Sequence[str],
     effort: Effort | None = None,
     on_found: Callable[[int], None] = lambda _count: None,
-) -> Iterator[Trial | Unread]:
+) -> Iterator[RoutineResult | Unread]:
     """Try every routine of some files; ``on_found`` is called with their number."""
     by_path = {source.path: source for source in sources}
     programs, unread = load_all(by_path.values())
@@ -100,7 +100,7 @@ def trials(
     for program in programs:
         projects.setdefault(id(program.project), []).append(program)
     for members in projects.values():
-        yield from _Project(members, called, executors, effort or Effort()).trials()
+        yield from _Project(members, called, executors, effort or Effort()).routine_results()
 
 
 def _own_routines(program: CheckedProgram) -> list[Routine]:
@@ -125,8 +125,8 @@ class _Project:
     _values: Mapping[str, Value] = field(default_factory=dict)
     _reason: str = ""
 
-    def trials(self) -> Iterator[Trial]:
-        """Yield the trial of each routine."""
+    def routine_results(self) -> Iterator[RoutineResult]:
+        """Yield the result of each routine."""
         every = [one for program in self._programs for one in program.routines_of(program.main)]
         starts = [routine for routine in every if self._programs[0].can_begin(routine)]
         try:
@@ -139,23 +139,27 @@ class _Project:
             main = program.main
             findings = check_module(program.project, main.module, main.source).findings
             for routine in _own_routines(program):
-                yield self._trial(program, routine, findings)
+                yield self._result(program, routine, findings)
 
-    def _trial(self, program: CheckedProgram, routine: Routine, findings: Findings) -> Trial:
+    def _result(
+        self, program: CheckedProgram, routine: Routine, findings: Findings
+    ) -> RoutineResult:
         unit = routine.unit
         path, line = unit.module.path, unit.line(routine.node)
         stage, reason = self._stage(routine, findings)
         if stage in ("errors", "unverified") or self._verified is None:
-            return Trial(path, line, routine.name, stage, reason)
+            return RoutineResult(path, line, routine.name, stage, reason)
         start = self._start(program, routine)
         if start is None:
-            return Trial(path, line, routine.name, "uncalled", "the type of a parameter is unknown")
+            return RoutineResult(
+                path, line, routine.name, "uncalled", "the type of a parameter is unknown"
+            )
         seen = {name: self._observed(name, program, start) for name in self._executors}
         first = seen[self._executors[0]]
         differences = {**self._disturbed(program, start), **self._differences(seen)}
         endings = {name: _ending(one) for name, one in seen.items()}
         why = _reason_of_ending(first)
-        return Trial(path, line, routine.name, stage, reason, endings, differences, why)
+        return RoutineResult(path, line, routine.name, stage, reason, endings, differences, why)
 
     def _stage(self, routine: Routine, findings: Findings) -> tuple[Stage, str]:
         unit = routine.unit

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import os
 import random
 import sys
 import tempfile
 import time
-import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
@@ -21,7 +19,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from grammar.generation.shapes import SHAPES, Shape
+from krl.commands.bench.growth_entries import ENTRIES, PROGRAM
 from krl.errors import BAD_INPUT, FINE, InputError, run
 from krl.terminal.options import JobsOption, JsonOption, all_cores
 from krl.terminal.output_files import check_files, write_json
@@ -34,170 +32,6 @@ if TYPE_CHECKING:
 
 _AIM: Final = 1.15
 _SMALLEST: Final = 8_000
-_PROGRAM: Final = "DEF A()\nEND\n"
-_ONE_TEST: Final = '[[test]]\nname = "one"\nexpect = [\n'
-_A_TEST: Final = _ONE_TEST + '"ends before 1"]\n'
-_CASE: Final = ";@ rule: ADV-03\n;@ title: A case\n;@ phase: run\nDEF a()\n"
-
-#: Writes an input of about the given number of characters into a folder, and returns its path.
-_Writer = Callable[[Path, int], Path]
-
-
-def _archive(folder: Path, size: int) -> Path:
-    """Return an archive with many small members."""
-    path = folder / "a.zip"
-    with zipfile.ZipFile(path, "w") as archive:
-        for i in range(max(1, size // 100)):
-            archive.writestr(f"KRC/R1/Program/A{i}.src", _PROGRAM.replace("A", f"A{i}"))
-    return path
-
-
-def _written(shape: Shape) -> _Writer:
-    def write(folder: Path, size: int) -> Path:
-        path = folder / shape.name
-        path.write_text(shape.text(size), encoding="ascii", newline="")
-        return path
-
-    return write
-
-
-def _shapes(shapes: Mapping[str, Shape], name: str | None = None) -> dict[str, _Writer]:
-    """Return functions that write files of these shapes, by title; ``name`` is the file name."""
-    return {
-        title: _written(shape if name is None else replace(shape, name=name))
-        for title, shape in shapes.items()
-    }
-
-
-_PROGRAMS: Final = _shapes(SHAPES)
-_G4: Final = "grammar G;\nfile : a* EOF ;\na : 'X'"
-_G4_END: Final = " ;\nX : 'X' ;\nNAME : [A-Z]+ ;\n"
-
-
-def _messages(file: Path) -> bytes:
-    """Return the messages of an editor that opens a file, requests its features, and exits."""
-    uri = {"uri": file.as_uri()}
-    text = file.read_text(encoding="ascii")
-    opened = {"textDocument": {**uri, "languageId": "krl", "version": 1, "text": text}}
-    changed = {
-        "textDocument": {**uri, "version": 2},
-        "contentChanges": [{"text": text + "; changed\n"}],
-    }
-    asked = ("documentSymbol", "semanticTokens/full", "foldingRange", "formatting")
-    wanted = {"textDocument": uri, "options": {"tabSize": 2, "insertSpaces": True}}
-    said: list[tuple[str, bool, Any]] = [
-        ("initialize", True, {"processId": None, "rootUri": None, "capabilities": {}}),
-        ("initialized", False, {}),
-        ("textDocument/didOpen", False, opened),
-        *((f"textDocument/{what}", True, wanted) for what in asked),
-        ("textDocument/didChange", False, changed),
-        ("textDocument/documentSymbol", True, wanted),
-        ("shutdown", True, None),
-        ("exit", False, None),
-    ]
-    bodies = [
-        json.dumps(
-            {"jsonrpc": "2.0", "method": method, "params": params}
-            | ({"id": number} if is_request else {})
-        ).encode()
-        for number, (method, is_request, params) in enumerate(said)
-    ]
-    return b"".join(b"Content-Length: %d\r\n\r\n%b" % (len(body), body) for body in bodies)
-
-
-@dataclass(frozen=True, slots=True)
-class _Entry:
-    """A command and its input.
-
-    Its words may contain the placeholders ``{file}``, ``{other}`` (the same file without some
-    lines), ``{out}`` and ``{small}``. ``before`` are commands that make the input and are not
-    measured; their output is at ``{printed}``; shapes that they reject are omitted. ``said`` gives
-    the standard input.
-    """
-
-    words: str
-    inputs: Mapping[str, _Writer] = field(default_factory=lambda: _PROGRAMS)
-    before: tuple[str, ...] = ()
-    said: Callable[[Path], bytes] = lambda _: b""
-
-
-_COMPILE: Final = "compile -o {out}.krlb {file}"
-_RUN: Final = "run --robot none --max-time 1"
-_FAILING: Final = {
-    name: shape for name, shape in SHAPES.items() if "never" in name or "lines" in name
-}
-
-_ENTRIES: Final[Mapping[str, _Entry]] = {
-    "check": _Entry("check --no-cache {file}"),
-    "check sarif": _Entry("check --no-cache --format sarif --out {out}.sarif {file}"),
-    "format": _Entry("format --check {file}"),
-    "recover": _Entry("recover --jobs 1 --no-start --out {out} {file}"),
-    "recover start": _Entry("recover --jobs 1 --out {out} {file}"),
-    "recover auto": _Entry("recover --auto --jobs 1 --out {out} {file}", _shapes(_FAILING)),
-    "growth": _Entry("growth --jobs 1 --out {out} {file}"),
-    "compile": _Entry(_COMPILE),
-    "disasm": _Entry("disasm {out}.krlb", before=(_COMPILE,)),
-    "asm": _Entry("asm -o {out}.krlb {printed}", before=(_COMPILE, "disasm {out}.krlb")),
-    "run": _Entry(_RUN + " --trace {out}.jsonl {file}"),
-    "run page": _Entry(_RUN + " --html {out}.html {file}"),
-    "debug": _Entry(
-        "debug --robot none --max-time 1 {file}", said=lambda _: b"step\n" * 20 + b"continue\n"
-    ),
-    "lsp": _Entry("lsp", said=_messages),
-    "diff": _Entry("diff {file} {small}"),
-    "diff both": _Entry("diff {file} {other}"),
-    "check archive": _Entry("check --no-cache {file}", {"members": _archive}),
-    "test": _Entry(
-        "test {file}",
-        _shapes(
-            {
-                "tests": Shape('[[test]]\nname = "{i}"\nexpect = ["ends before 1"]\n', "", ""),
-                "expectations": Shape('"out {i} never",\n', _ONE_TEST, "]\n"),
-                "inputs of a test": Shape('"t=0.{i} IN[1]=TRUE",\n', "io = [\n", "]\n" + _A_TEST),
-                "statements before": Shape('"$FLAG[1] = TRUE",\n', "before = [\n", "]\n" + _A_TEST),
-            },
-            "test_a.toml",
-        ),
-    ),
-    "conform": _Entry(
-        "conform --executor tree --robot none --jobs 1 {file}",
-        _shapes(
-            {
-                "expectations": Shape("  I={i} ;> value I {i}\n", _CASE + "  INT I\n", "END\n"),
-                "lines of a case": Shape(
-                    "  I={i}\n", _CASE + "  INT I\n  I=0 ;> runs 1\n", "END\n"
-                ),
-            }
-        ),
-    ),
-    "recover grammar": _Entry(
-        "recover --jobs 1 --no-start --out {out} --grammar {file} {small}",
-        _shapes(
-            {
-                "rules": Shape("r{i} : 'X' NAME ;\n", _G4 + " ;\n", _G4_END[3:]),
-                "alternatives": Shape(" | 'X' NAME", _G4, _G4_END),
-                "a long sequence": Shape(" NAME", _G4, _G4_END),
-                "optional parts": Shape("r{i} : 'X'? NAME? ;\n", _G4 + " ;\n", _G4_END[3:]),
-                "brackets in brackets": Shape("(", _G4 + " ", _G4_END, "NAME", ")"),
-            },
-            "G.g4",
-        ),
-    ),
-    "run inputs": _Entry(
-        "run --robot none --max-time 1 --io {file} {small}",
-        _shapes(
-            {
-                "inputs by time": Shape("t=0.{i} IN[1]=TRUE\n", "", ""),
-                "inputs by output": Shape("on OUT[{i}]=TRUE after 0.2 IN[7]=TRUE\n", "", ""),
-            },
-            "io.txt",
-        ),
-    ),
-    "check settings": _Entry(
-        "check --no-cache --settings {file} {small}",
-        _shapes({"excluded": Shape('"a{i}/*",\n', "exclude = [\n", "]\n")}, "krl.toml"),
-    ),
-}
 
 
 def growth(
@@ -233,8 +67,8 @@ def growth(
     begun = time.monotonic()
     tasks = [
         (name, title)
-        for name in _chosen("--entry", entry, _ENTRIES)
-        for title in _ENTRIES[name].inputs
+        for name in _chosen("--entry", entry, ENTRIES)
+        for title in ENTRIES[name].inputs
         if not shape or title in shape
     ]
     if not tasks:
@@ -256,7 +90,7 @@ def growth(
     ):
         for task, found in zip(tasks, threads.map(one, tasks), strict=True):
             rows.append(_row(*task, found))
-            rows.sort(key=lambda row: (list(_ENTRIES).index(row["entry"]), row["shape"]))
+            rows.sort(key=lambda row: (list(ENTRIES).index(row["entry"]), row["shape"]))
             write_json({"bench": "growth", "aim": _AIM, "rows": rows}, json_file, indent=1)
             advance()
     measured = [row for row in rows if row["costs"]]
@@ -273,7 +107,7 @@ def _kept(record: Path | None) -> list[dict[str, Any]]:
     try:
         known: Any = json_of(read_text(record))
         rows = known["rows"]
-        return [row for row in rows if row["entry"] in _ENTRIES and row["shape"] and "costs" in row]
+        return [row for row in rows if row["entry"] in ENTRIES and row["shape"] and "costs" in row]
     except (OSError, ValueError, KeyError, TypeError):
         raise InputError(f"{record}: not a record of krl bench growth") from None
 
@@ -298,7 +132,7 @@ def _measure(entry: str, shape: str, largest: int) -> Growth | None:
     from krl.commands.app import app
     from support.measure.cost_by_size import measure_growth
 
-    chosen = _ENTRIES[entry]
+    chosen = ENTRIES[entry]
     with tempfile.TemporaryDirectory() as place, Path(os.devnull).open("w") as nowhere:
         for stream in (1, 2):  # also output that bypasses Python
             os.dup2(nowhere.fileno(), stream)
@@ -313,7 +147,7 @@ def _measure(entry: str, shape: str, largest: int) -> Growth | None:
                 (folder / name).mkdir(parents=True)
             file = chosen.inputs[shape](folder / "given", size)
             small, other = folder / "small" / "small.src", folder / "less" / file.name
-            small.write_text(_PROGRAM, encoding="ascii")
+            small.write_text(PROGRAM, encoding="ascii")
             if "{other}" in chosen.words:
                 lines = file.read_text(encoding="ascii").splitlines(keepends=True)
                 kept = (line for number, line in enumerate(lines) if number % 7 != 3)

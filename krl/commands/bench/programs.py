@@ -1,7 +1,6 @@
 """`krl bench programs`: which main programs of controllers' backups run to their end."""
 
-from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -44,8 +43,6 @@ _RESULTS = {
 
 #: The most lines with different faults that are printed for an origin; the record has all.
 _MOST_FAULTS = 5
-#: Endings of programs that have nothing left to do.
-_SERVED = ("end", "halt", "waits", "goes on")
 
 
 class Part(StrEnum):
@@ -119,6 +116,7 @@ def programs(
     origin is shown as soon as its programs have run. Exit status 1 after a defect of the workbench.
     """
     from interp.bench.program_survey import RandomSample, RunBounds, damaged, remaining, survey
+    from interp.bench.program_survey_record import survey_record
     from interp.executors import available
 
     check_files(json_file)
@@ -134,24 +132,15 @@ def programs(
     left = remaining(whole, part.value)
     kinds = ["", *damage.split(",")] if damage else [""]
     origins = list(damaged(left, kinds, seed))
-    record: dict[str, Any] = {
-        "bench": "programs",
-        "executor": bounds.executor,
-        "robot": bounds.robot,
-        "part": part.value,
-        "damages": [],
-        "sample": sample,
-        "seed": seed,
-        "results": {},
-        "moved": 0,
-        "served": 0,
-        "own_faults": 0,
-        "programs": [],
-        "unread": [],
-    }
     console = Console(highlight=False)
     finished: dict[Origin, SurveyedOrigin] = {}
     expected = 0
+
+    def record() -> dict[str, Any]:
+        """Return the record of what has run, in the order of the origins."""
+        done = [finished[one] for one in origins if one in finished]
+        return survey_record(done, bounds, part.value, seed)
+
     with progress_bar("running programs") as bar:
 
         def on_found(count: int) -> None:
@@ -164,12 +153,11 @@ def programs(
             origins, bounds, jobs=all_cores(jobs), cache=cache, on_found=on_found, on_done=bar
         ):
             finished[done.origin] = done
-            _fill(record, [finished[one] for one in origins if one in finished])
-            write_json(record, json_file, indent=1)
+            write_json(record(), json_file, indent=1)
             _print_origin(console, done)
-    write_json(record, json_file, indent=1)
-    _print_summary(console, record)
-    return FINDINGS if "crash" in record["results"] else FINE
+    write_json(last := record(), json_file, indent=1)
+    _print_summary(console, last)
+    return FINDINGS if "crash" in last["results"] else FINE
 
 
 def _origins(paths: list[Path]) -> "list[Origin]":
@@ -180,29 +168,6 @@ def _origins(paths: list[Path]) -> "list[Origin]":
     for origin, source in sources_below(paths):
         files.setdefault(origin, []).append(source)
     return [Origin(name, tuple(sources)) for name, sources in files.items()]
-
-
-def _fill(record: dict[str, Any], finished: "Sequence[SurveyedOrigin]") -> None:
-    """Put the results so far into the record."""
-    rows = [row for one in finished for row in one.rows]
-    record["programs"] = rows
-    record["unread"] = [
-        {"path": path, "reason": reason} for one in finished for path, reason in one.unread
-    ]
-    record["results"] = dict(Counter(row["result"] for row in rows))
-    record["moved"] = sum(row["motions"] > 0 for row in rows)
-    record["served"] = sum(row["result"] in _SERVED for row in rows)
-    record["own_faults"] = sum(row["is_own_fault"] for row in rows)
-    record["damages"] = [
-        {
-            "damage": kind,
-            "programs": len(some),
-            "moved": sum(row["motions"] > 0 for row in some),
-            "served": sum(row["result"] in _SERVED for row in some),
-        }
-        for kind in dict.fromkeys(row["damage"] for row in rows)
-        for some in [[row for row in rows if row["damage"] == kind]]
-    ]
 
 
 def _print_origin(console: Console, done: "SurveyedOrigin") -> None:

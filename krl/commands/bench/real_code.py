@@ -2,8 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
@@ -15,9 +14,6 @@ from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import figures
 from reports.rendering.number_format import counted
-
-if TYPE_CHECKING:
-    from conformance.differential.corpus_routines import Trial, Unread
 
 _MOST_REASONS = 8
 _STAGES = (
@@ -57,7 +53,8 @@ def real_code(
     time, inputs are random. Each routine runs twice; in the second run conditions are evaluated,
     actions entered, and some requests fail. Exit status 1 if executors differ.
     """
-    from conformance.differential.corpus_routines import Effort, Trial, Unread, trials
+    from conformance.differential.corpus_record import routines_record
+    from conformance.differential.corpus_routines import Effort, routine_results
     from interp.executors import available
 
     check_files(json_file)
@@ -67,49 +64,16 @@ def real_code(
             raise InputError(f"--executor: there is no {name} here, but {', '.join(available())}")
     roots = programs_or_ours(paths)
     sources = [source for _, source in sources_below(roots)]
-    tried: list[Trial] = []
-    unread: list[Unread] = []
+    found = []
     with progress_bar("trying routines") as bar:
         effort = Effort(statements=statements, seed=seed)
-        for one in trials(sources, chosen, effort, bar.expect):
+        for one in routine_results(sources, chosen, effort, bar.expect):
             bar()
-            if isinstance(one, Unread):
-                unread.append(one)
-            else:
-                tried.append(one)
-    record = _record(chosen, len(sources), tried, unread)
+            found.append(one)
+    record = routines_record(found, chosen, len(sources))
     write_json(record, json_file, indent=1)
     _print(record)
     return FINDINGS if record["differences"] else FINE
-
-
-def _record(
-    executors: Sequence[str], files: int, tried: "Sequence[Trial]", unread: "Sequence[Unread]"
-) -> dict[str, Any]:
-    checked = [one for one in tried if one.stage != "errors"]
-    ran = [one for one in tried if one.endings is not None]
-    endings = {
-        name: dict(Counter(one.endings[name] for one in ran if one.endings is not None))
-        for name in executors
-    }
-    return {
-        "bench": "real-code",
-        "executors": list(executors),
-        "files": files,
-        "unread": [asdict(one) for one in unread],
-        "routines": len(tried),
-        "checked": len(checked),
-        "links": sum(one.stage not in ("errors", "unlinked", "uncalled") for one in tried),
-        "compiles": sum(one.stage in ("runs", "unlinked") for one in tried),
-        "verifies": sum(one.stage not in ("errors", "unverified") for one in tried),
-        "ran": len(ran),
-        "endings": endings,
-        "differences": sum(bool(one.differences) for one in ran),
-        "trials": [asdict(one) for one in tried],
-    }
-
-
-# -- in the terminal -------------------------------------------------------------------------------
 
 
 def _print(record: Mapping[str, Any]) -> None:

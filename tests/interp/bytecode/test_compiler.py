@@ -9,7 +9,7 @@ from typing import get_args
 
 import pytest
 
-from conformance.differential.corpus_routines import Trial, trials
+from conformance.differential.corpus_routines import RoutineResult, routine_results
 from conformance.differential.random_world import QuietWorld
 from conformance.differential.runs import facts_of
 from conformance.differential.traces import fact_of
@@ -392,7 +392,9 @@ def test_own_programs(folder: str) -> None:
         found = decode(path.read_bytes()) if path.is_file() else ""
         if not isinstance(found, str) and path.suffix.lower() in (".src", ".dat", ".sub"):
             sources.append(Source(found.text, path.relative_to(PROGRAMS).as_posix()))
-    tried = [one for one in trials(sources, ("tree", "vm")) if isinstance(one, Trial)]
+    tried = [
+        one for one in routine_results(sources, ("tree", "vm")) if isinstance(one, RoutineResult)
+    ]
     assert len(tried) > 5
     for one in tried:
         assert one.stage in ("runs", "unlinked")
