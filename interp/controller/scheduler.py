@@ -268,7 +268,8 @@ class Scheduler:
         task.at = request.at
         match request:
             case End():
-                return self.levels.leave(task) if task.levels else self._end(task, request)
+                level = task.level
+                return self._end(task, request) if level is None else self.levels.leave(task, level)
             case Fail():
                 self._fail(task, request)
                 return None

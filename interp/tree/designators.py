@@ -30,7 +30,6 @@ from interp.tree.run import Frame, ProgramState, Steps
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.values import Value, copied, index
 
-_MOST_SIGNALS = 8
 #: A variable as VARSTATE and VARTYPE receive it as text [TYP-18], and its parts.
 _WRITTEN = re.compile(
     r"\s*([A-Z_]\w*(?:\.\w+|\[\s*\d{1,9}(?:\s*,\s*\d{1,9}){0,2}\s*\])*)(?:\[[\s,]*\])?\s*",
@@ -95,10 +94,10 @@ class Designators(ABC):
             raise LinkError(self.frame.unit.undeclared(name))
         return self.declared(found)
 
-    def declared(self, found: Found, signals: int = 0) -> Place:
+    def declared(self, found: Found, signals: tuple[SignalSymbol, ...] = ()) -> Place:
         """Return the place of a declared variable, in a frame, a data list or the controller.
 
-        ``signals`` counts the signals on the way here, to detect a cycle.
+        ``signals`` are the signals on the way here, to detect a cycle.
         """
         found = self.run.program.declaration(found)
         symbol = found.symbol
@@ -111,16 +110,18 @@ class Designators(ABC):
         if found.module is None or symbol.key.startswith("$"):
             return SystemPlace((symbol.key,), self.run.program.type_of(found))
         if isinstance(symbol, SignalSymbol):
-            if signals == _MOST_SIGNALS:
+            if symbol in signals:
                 raise LinkError(f"the signal {symbol.name} leads nowhere")
-            return self._signal(symbol, found, signals)
+            return self._signal(symbol, found, (*signals, symbol))
         if symbol not in self.run.data:
             if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT):
                 raise untyped(symbol.name)
             raise LinkError(f"{symbol.name} is no variable")
         return self.run.data[symbol]
 
-    def _signal(self, symbol: SignalSymbol, found: Found, signals: int) -> SystemPlace:
+    def _signal(
+        self, symbol: SignalSymbol, found: Found, signals: tuple[SignalSymbol, ...]
+    ) -> SystemPlace:
         """Return the place that a signal denotes.
 
         A signal of several bits has a path such as ``("$IN", 1, "TO", 8)`` and is an INT [IOT-03].
@@ -130,9 +131,7 @@ class Designators(ABC):
         ends: list[SystemPlace] = []
         for name, numbers in signal_ends(symbol):
             means = unit.found(name)
-            place = (
-                self.declared(means, signals + 1) if means else SystemPlace((name.key,), UNKNOWN)
-            )
+            place = self.declared(means, signals) if means else SystemPlace((name.key,), UNKNOWN)
             place = element(place, numbers) if numbers else place
             if isinstance(place, SystemPlace):
                 ends.append(place)

@@ -11,7 +11,7 @@ from weakref import WeakKeyDictionary
 
 from grammar.semantics.link import Project
 from grammar.semantics.scopes import Found
-from grammar.semantics.symbols import Symbol
+from grammar.semantics.symbols import SignalSymbol, Symbol
 from grammar.syntax import ast
 from interp.program.load import CheckedProgram, Unit
 from interp.program.variables import MOST_CELLS, cells, data_lists, data_variables, first_values
@@ -100,7 +100,7 @@ def _initialise(run: ProgramState, unit: Unit, content: ast.DataList) -> None:
 class _DataList(Calls):
     """The evaluation of expressions in a data list."""
 
-    def declared(self, found: Found, signals: int = 0) -> Place:
+    def declared(self, found: Found, signals: tuple[SignalSymbol, ...] = ()) -> Place:
         """Return the place of a variable; a system variable of a data list is an ordinary one."""
         place = self.run.data.get(found.symbol)
         return place if place is not None else super().declared(found, signals)

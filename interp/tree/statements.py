@@ -174,7 +174,6 @@ class Statements(Motions):
                 yield from rule(self, node)
             except RuntimeFailure as error:
                 if isinstance(error, Fault) and self.run.guard is Guard.NOW:
-                    self.run.guard = Guard.OFF
                     yield Write(self.at(), ("$ERR", "NUMBER"), error.number or 1)
                 elif self.run.skips and error.is_of_statement:
                     yield Skip(self.at(), error)

@@ -35,8 +35,6 @@ from interp.program.literals import integer_literal
 from interp.program.variables import signal_ends, untyped
 from interp.values.faults import LinkError
 
-_MOST_SIGNALS = 8
-
 
 class Evaluation(Protocol):
     """Generates the value of an expression on the stack, for a place of type ``wanted``."""
@@ -86,7 +84,7 @@ class Designators:
             return SystemVariable((name.key,), UNKNOWN)
         raise self._emitter.unlinked(self._context.unit.undeclared(name))
 
-    def declared(self, found: Found, signals: int = 0) -> Location:
+    def declared(self, found: Found, signals: tuple[SignalSymbol, ...] = ()) -> Location:
         """Return the location of a declared name: frame, data list, or system variable."""
         try:
             found = self._context.program.declaration(found)
@@ -100,9 +98,9 @@ class Designators:
         if self._is_remote(found):
             return SystemVariable((symbol.key,), self._context.program.type_of(found))
         if isinstance(symbol, SignalSymbol):
-            if signals == _MOST_SIGNALS:
+            if symbol in signals:
                 raise self._emitter.unlinked(f"the signal {symbol.name} leads nowhere")
-            return self._signal(symbol, found, signals)
+            return self._signal(symbol, found, (*signals, symbol))
         if symbol in self._context.tables.places:
             return DataCells(*self._context.tables.places[symbol])
         if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT):
@@ -115,16 +113,16 @@ class Designators:
             return False
         return found.module is None or found.symbol.key.startswith("$")
 
-    def _signal(self, symbol: SignalSymbol, found: Found, signals: int) -> SystemVariable:
+    def _signal(
+        self, symbol: SignalSymbol, found: Found, signals: tuple[SignalSymbol, ...]
+    ) -> SystemVariable:
         """Return the inputs or outputs of a signal; a group is ``("$IN", 1, "TO", 8)`` [IOT-03]."""
         assert found.module is not None, "the controller's signals are variables"
         unit = self._context.program.units[found.module]
         ends: list[SystemVariable] = []
         for name, numbers in signal_ends(symbol):
             means = unit.found(name)
-            place = (
-                self.declared(means, signals + 1) if means else SystemVariable((name.key,), UNKNOWN)
-            )
+            place = self.declared(means, signals) if means else SystemVariable((name.key,), UNKNOWN)
             if isinstance(place, SystemVariable):
                 ends.append(_remote_element(place, tuple(numbers)) if numbers else place)
         if not ends:

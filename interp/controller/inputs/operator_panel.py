@@ -36,9 +36,7 @@ class OperatorPanel:
                 self._messages.acknowledge(number)
                 if was_waiting:
                     self.free_arm()
-            case "STOP" if (
-                not self._is_stopped and self._state.program_states["robot"] == "P_ACTIVE"
-            ):
+            case "STOP" if self._state.program_states["robot"] == "P_ACTIVE":
                 self._is_stopped = True
                 self._state.program_states["robot"] = "P_STOP"
                 self._arm.halt()

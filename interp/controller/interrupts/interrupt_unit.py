@@ -127,7 +127,7 @@ class InterruptUnit:
 
     def _resume(self, task: Task, request: Request, target: int) -> Answer:
         self._state.trace.record(task.name, "resume", request.at, depth=target)
-        while task.levels and task.levels[-1].depth >= target:
+        while task.level is not None and task.level.depth >= target:
             self._levels.pop(task)
         task.interrupts.forget(target + 1)
         task.executor.unwind(target)

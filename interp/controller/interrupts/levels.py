@@ -46,32 +46,36 @@ class Levels:
         level = Level(
             kind, priority, at, task.executor.depth, task.blocked, base, interrupt, call, signal
         )
-        if kind != "cycle" and priority != ALWAYS:
+        if priority != ALWAYS:
             self._state.trace.record(task.name, "interrupt_enter", at, priority=priority)
         task.executor.enter(code)
         task.levels.append(level)
         task.at, task.blocked, task.reply = at, None, None
 
-    def leave(self, task: Task) -> Answer:
+    def leave(self, task: Task, level: Level) -> Answer:
         """End the top level; return what to wait for before the level below continues."""
-        level = task.levels[-1]
         if not level.has_braked or not level.has_moved:
-            return self._finish(task)
-        end = End(level.at)
+            return self._finish(task, level)
         return Blocked(
-            end, lambda: not level.motions, lambda: self._return_to_path(task, end), is_open=False
+            End(level.at),
+            lambda: not level.motions,
+            lambda: self._return_to_path(task, level),
+            is_open=False,
         )
 
-    def _return_to_path(self, task: Task, end: End) -> Answer:
+    def _return_to_path(self, task: Task, level: Level) -> Answer:
         """Move back to where BRAKE stopped the arm, if the routine has moved it away from there."""
-        level = task.levels[-1]
         here = self._positions.actual().axes
         if level.braked_at is not None and not _is_near(level.braked_at, here):
             self._queue.plan_return(task, level.at, level.braked_at)
-        return Blocked(end, lambda: not level.motions, lambda: self._finish(task), is_open=False)
+        return Blocked(
+            End(level.at),
+            lambda: not level.motions,
+            lambda: self._finish(task, level),
+            is_open=False,
+        )
 
-    def _finish(self, task: Task) -> Answer:
-        level = task.levels[-1]
+    def _finish(self, task: Task, level: Level) -> Answer:
         self.pop(task)
         if level.has_braked:
             self._arm.proceed()
@@ -87,12 +91,13 @@ class Levels:
     def pop(self, task: Task) -> None:
         """Remove the top level, and restore what it has changed only for itself."""
         level = task.levels.pop()
-        if task.levels and level.has_moved:  # a level below that has braked must return the arm
-            task.levels[-1].has_moved = True
-            task.levels[-1].motions |= level.motions
+        below = task.level
+        if below is not None and level.has_moved:  # one that has braked must return the arm
+            below.has_moved = True
+            below.motions |= level.motions
         if level.base is not None:  # [INT-13]
             self._state.variables.put(("$BASE",), level.base)
-        if level.kind != "cycle" and level.priority != ALWAYS:
+        if level.priority != ALWAYS:
             self._state.trace.record(
                 task.name, "interrupt_leave", level.at, priority=level.priority
             )

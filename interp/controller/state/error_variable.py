@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from interp.controller.state.declared_interrupts import module_name
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Task
 from interp.controller.state.trace import TaskName
 from interp.port.requests import Write
 from interp.values.predefined_values import word
-from interp.values.values import ArrayValue, StructureValue, Value, copied, set_text
+from interp.values.values import ArrayValue, Value, copied, set_text
 
 #: A program and a depth of its calls.
 _Level = tuple[TaskName, int]
@@ -52,9 +54,7 @@ class ErrorVariable:
         variables.put(request.path, request.value)
         if request.path != ("$ERR", "NUMBER"):
             return
-        error = variables.read(("$ERR",))
-        if not isinstance(error, StructureValue):
-            return
+        error: Any = variables.read(("$ERR",))
         level = task.level
         error.set("INT_PRIO", level.priority if level else 0)
         error.set("LINE_NR", request.at.line)

@@ -125,7 +125,7 @@ class Task:
     @property
     def priority(self) -> int:
         """The priority of what runs; only a lower number interrupts it."""
-        return self.levels[-1].priority if self.levels else PROGRAM
+        return PROGRAM if self.level is None else self.level.priority
 
     def holds(self, condition: CodeHandle, read: Reader) -> bool:
         """Return whether a condition is TRUE; ``read`` reads system variables. Raises `Fault`."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
+from typing import Any
 
 from grammar.semantics.types import BOOL
 from interp.controller.state.clock import Clock
@@ -37,7 +38,7 @@ class Timers:
 
     def __init__(self, clock: Clock, size: int) -> None:
         self._clock = clock
-        self._timers = [_Timer() for _ in range(size)]
+        self._timers: dict[Any, _Timer] = {number: _Timer() for number in range(1, size + 1)}
 
     def read(self, path: Path) -> Value:
         """Return the value of one of the three variables; faults ``index``."""
@@ -61,7 +62,7 @@ class Timers:
             timer.since = None if timer.since is None else tick
             timer.flag = None
             return
-        is_true = converted(value, BOOL) is True
+        is_true: Any = converted(value, BOOL)
         if path[0] == "$TIMER_FLAG":
             timer.flag, timer.was_below = is_true, self._value(timer) < 0
             return
@@ -76,11 +77,13 @@ class Timers:
         return timer.base + (self._clock.tick - timer.since) // 1000
 
     def _timer(self, path: Path) -> _Timer:
-        if len(path) != 2 or not isinstance(path[1], int):
+        _, *steps = path
+        if len(steps) != 1:
             raise fault("inadmissible")
-        if not 1 <= path[1] <= len(self._timers):
+        (number,) = steps
+        if number not in self._timers:
             raise fault("index")
-        return self._timers[path[1] - 1]
+        return self._timers[number]
 
 
 def date_members(start: datetime, now: int, date: StructureValue) -> StructureValue:
