@@ -33,6 +33,8 @@ _PLACES: Final = frozenset(
 _VALUES: Final = frozenset({"value", "values"})
 #: Positions of the robot; reading them stops the advance run [ADV-07.b].
 _POSITION: Final = re.compile(r"\$(?:POS|AXIS)_(?:ACT|FOR|BACK|INT|RET)\b", re.IGNORECASE)
+#: A comment behind what is no text.
+_COMMENT: Final = re.compile(r"^((?:[^\";]|\"[^\"]*\")*);.*")
 #: What may be set between two motions without a stop of the advance run.
 _PARAMETER: Final = re.compile(r"\$(?:VEL|ACC|APO|ORI_TYPE|CIRC_TYPE|VEL_AXIS|ACC_AXIS)\b")
 _COMPLETE: Final = ({"X", "Y", "Z"}, {"A1", "A2", "A3", "A4", "A5", "A6"})
@@ -40,12 +42,19 @@ _COMPLETE: Final = ({"X", "Y", "Z"}, {"A1", "A2", "A3", "A4", "A5", "A6"})
 _SPACES: Final = {"PTP": "older", "LIN": "older", "CIRC": "older", "SPTP": "axes"}
 
 
+#: Clauses that allow a form: where they are wrong, a controller does not take the program at all.
+_FORMS: Final = frozenset(
+    {"CTL-09.b", "INT-06.c", "SCO-07.b", "SCO-13.d", "SPL-10", "TRG-10.e", "TYP-04.b", "TYP-08.e"}
+)
+
+
 @dataclass(frozen=True, slots=True)
 class Doubt:
     """A line that rests on a clause.
 
     ``kinds`` are the expectations there that do, all if it is empty. With ``behind`` they are those
-    at the next line about which something is said, if nothing is said about this one.
+    at the next line about which something is said, if nothing is said about this one. On a form
+    rests whatever the program does.
     """
 
     file: str
@@ -57,6 +66,8 @@ class Doubt:
     def concerns(self, case: Case) -> list[Expectation]:
         """Return the hard expectations that rest on something else."""
         said = case.said_of(self.file, self.line, behind=self.behind)
+        if self.clause in _FORMS and case.phase == "run":
+            said = list(case.expectations)
         return [one for one in said if case.is_sure(one) and one.kind in (self.kinds or {one.kind})]
 
 
@@ -79,7 +90,7 @@ def doubts(case: Case) -> Iterator[Doubt]:
     }
     for source, tree in trees.items():
         for number, line in enumerate(source.text.splitlines(), start=1):
-            code = line.partition(";")[0]
+            code = _COMMENT.sub(r"\1", line)
             for clause, written in _patterns():
                 if written.search(code):
                     yield Doubt(source.path, number, clause)

@@ -49,6 +49,8 @@ _BESIDE: Final = (
     "      $OUT[40] = TRUE ;> out 40 TRUE after out 1 [SUB-03.b]\n    ENDIF\n"
     "    WAIT SEC 0.024\n  ENDLOOP\nEND\n"
 )
+#: What only a stored case has in its front matter.
+_OWN: Final = (";@ rule", ";@ title", ";@ unconfirmed")
 #: What stops the arm on its path, and the rule by which it keeps to it.
 _STOPS: Final = {"brake": "INT-09.b", "brake_hard": "INT-09.b", "operator": "CTL-08.b"}
 _STOPPED: Final = re.compile(r"(;> pa(?:th|sses) .*)\[.*\]")
@@ -110,7 +112,7 @@ def drawn(seed: int) -> list[Case]:
         copyfile(_MACHINE, folder / _MACHINE.name)
         for number, row in enumerate(rows, 1):
             name = f"drawn_{number:03}"
-            head = [one for one in _front(row) if not one.startswith((";@ rule", ";@ title"))]
+            head = [one for one in _front(row) if not one.startswith(_OWN)]
             body = [_bare(one) for one in _main(name, row)]
             speed = next(at for at, one in enumerate(body) if one.startswith(_SPEED))
             body[speed] += f" ;> runs 1 [{_FIRST}]"
@@ -131,6 +133,8 @@ def _front(row: Row) -> Iterator[str]:
     yield f";@ title: {words}".replace("_", " ")
     yield ";@ phase: run"
     yield ";@ robot: kinematic"
+    if row["path"] in _SPLINES:
+        yield ";@ unconfirmed: whether DISTANCE refers to spline motions is not published"
     act = "press STOP" if row["act"] == "operator" else "IN[1]=TRUE"
     yield f";@ io: on OUT[1]=TRUE after {row['when']} {act}"
     if row["act"] == "operator":

@@ -132,6 +132,8 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
                 ("INTERRUPT DECL 5 WHEN NOT($IN[1]) DO good()\n  HALT ;> runs 1", ""),
                 ("ABS(1)\n  HALT ;> runs 1", "good.src:5: only CTL-09.b allows it"),
                 ("$TIMER[1] = ATAN2(, 1)\n  HALT ;> runs 1", "only SCO-13.d allows it"),
+                ("STRUC S INT L[2] ;> never [TYP-08.e]\n  HALT ;> runs 1", "only TYP-08.e allows"),
+                ('SWRITE(";", T[1,]) ;> runs 1', "only SCO-07.b allows it"),
                 ("$BASE = {X 1}\n  HALT ;> runs 1", "only TYP-13.d allows it"),
                 ("$BASE = {X 1, Y 2, Z 3, A 4, B 5, C 6}\n  HALT ;> runs 1", ""),
                 ("SLIN {X 1} C_SPL ;> apex\n  SPTP {A1 1}", "good.src:5: only BLD-12 allows it"),
