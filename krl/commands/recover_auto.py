@@ -1,6 +1,5 @@
 """`krl recover --auto`: extends a grammar automatically, round by round."""
 
-import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,31 +9,19 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from krl.construct_ledger import expected_errors
-from krl.errors import FINE, InputError
+from krl.errors import FINE, InputError, as_input_errors
 from krl.terminal.output_files import write_json
 from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
     from grammar.notation.edits import Edit
     from grammar.notation.model import Grammar
+    from recovery.induction.growth_folder import GrowthFolder
     from recovery.induction.induced_ledger import InducedLedger
     from recovery.induction.rounds import Induction
     from recovery.induction.target_comparison import Share
     from recovery.negatives.negatives import Negative
 
-# How a growth began, as its record says it.
-_DEFAULTS: Mapping[str, Any] = {
-    "start": "",
-    "without": (),
-    "held_out": (),
-    "hold_out": 0.0,
-    "seed": 1,
-    "suffix": "",
-    "negatives_path": "",
-    "negatives_sha256": "",
-    "target_path": "",
-    "target_sha256": "",
-}
 # The number of generated negatives that edits are tested with, drawn evenly from more, and their
 # seed, which neither a bench nor the comparison with the target uses.
 _NEGATIVES = 1_500
@@ -66,6 +53,7 @@ def recover_auto(
     """
     from grammar.parser.lexer import ABSENT, lexer_of
     from recovery.induction.corpus_lines import drawn_origins, held_out
+    from recovery.induction.growth_folder import GrowthFolder, GrowthFolderError
     from recovery.induction.induced_ledger import InducedLedger
     from recovery.induction.language import KRL, language_of
     from recovery.induction.rounds import Induction
@@ -77,11 +65,12 @@ def recover_auto(
     is_continued = resume or bool(strike)
     _check(grammar, without, hold_out, suffix, is_continued=is_continued)
     given = {"hold_out": hold_out, "seed": seed, "suffix": suffix or None}
-    known = _state(out) if is_continued else {}
-    settings = _settings(given, known, out)
-    with expected_errors():
+    folder = GrowthFolder(out)
+    with expected_errors(), as_input_errors(GrowthFolderError):
+        known = folder.settings() if is_continued else {}
+        settings = _settings(given, known, out)
         if is_continued:
-            ledger, struck = _ledger_so_far(grammar, out, strike)
+            ledger, struck = _ledger_so_far(grammar, folder, strike)
         else:
             start, names = _start(grammar, without, settings["seed"])
             settings |= names
@@ -112,7 +101,7 @@ def recover_auto(
     induction = Induction(
         ledger.grammar, shown, held, every, language=language, struck=struck, start=ledger.start
     )
-    written = _Output(ledger, struck, out, json_file, settings, began)
+    written = _Output(ledger, struck, folder, json_file, settings, began)
     is_finished = _grow(induction, written)
     reached = None
     if goal:
@@ -172,30 +161,14 @@ def _settings(given: Mapping[str, Any], known: Mapping[str, Any], out: Path) -> 
 
     ``None`` is not given. Raises `InputError` if one that is given differs from the known one.
     """
+    from recovery.induction.growth_folder import SETTINGS
+
     given = {name: value for name, value in given.items() if value is not None}
     for name, value in given.items():
         if value != known.get(name, value):
             option = name.replace("_", "-")
             raise InputError(f"--{option} {value}: {out} was begun with {known[name] or 'none'}")
-    return {**_DEFAULTS, **given, **known}
-
-
-def _state(out: Path) -> dict[str, Any]:
-    """Return the settings in the record of a growth, without those that it lacks."""
-    from support.files.untrusted import json_of, read_bytes
-
-    file = out / "auto.json"
-    if not (file.is_file() and (out / "start.g4").is_file()):
-        raise InputError(f"{out}: there is nothing to resume")
-    try:
-        record = json_of(read_bytes(file).decode())
-        if not isinstance(record, dict):
-            raise TypeError
-        known = {name: type(d)(record[name]) for name, d in _DEFAULTS.items() if name in record}
-        hash(tuple(known.values()))  # names of origins are texts
-    except (ValueError, TypeError):
-        raise InputError(f"{file}: not the record of an automatic recovery") from None
-    return known
+    return {**SETTINGS, **given, **known}
 
 
 def _start(grammar: Path | None, without: int, seed: int) -> "tuple[Grammar, dict[str, Any]]":
@@ -221,36 +194,21 @@ def _start(grammar: Path | None, without: int, seed: int) -> "tuple[Grammar, dic
 
 
 def _ledger_so_far(
-    grammar: Path | None, out: Path, strike: Sequence[str]
+    grammar: Path | None, folder: "GrowthFolder", strike: Sequence[str]
 ) -> "tuple[InducedLedger, list[tuple[Edit, ...]]]":
     """Return where to continue, and the edits that must not be taken again.
 
     Raises `InputError` if ``grammar`` is not the one that the growth began with.
     """
-    from grammar.notation.edits import from_data
     from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
-    from recovery.induction.induced_ledger import InducedLedger, without
-    from recovery.ledger.ledger import Ledger, in_force
-    from support.files.untrusted import read_bytes
 
-    start = read_file(out / "start.g4")
-    if grammar and read_file(grammar, read_foreign).text != start.text:
-        raise InputError(f"--grammar {grammar}: {out} was begun with another grammar")
-    constructs = list(Ledger.read(out / "constructs").constructs)
-    struck_file = out / "struck.json"
-    struck: list[tuple[Edit, ...]] = []
-    if struck_file.is_file():
-        try:
-            known = json.loads(read_bytes(struck_file))
-            struck = [tuple(from_data(edit) for edit in edits) for edits in known]
-        except (ValueError, TypeError, AttributeError) as error:
-            raise InputError(f"{struck_file}: {error}") from None
-    struck += [c.edits for c in constructs if c.id in strike]
-    left, gone = without(start, constructs, strike)
+    ledger, struck, gone = folder.continued(strike)
+    if grammar and read_file(grammar, read_foreign).text != ledger.start.text:
+        raise InputError(f"--grammar {grammar}: {folder.path} was begun with another grammar")
     for construct in gone:
         typer.echo(f"struck out: {construct.id} {construct.title}")
-    return InducedLedger(start, in_force(start, left), left), struck
+    return ledger, struck
 
 
 def _grow(induction: "Induction", written: "_Output") -> bool:
@@ -263,7 +221,8 @@ def _grow(induction: "Induction", written: "_Output") -> bool:
             written.write()
     except KeyboardInterrupt:
         typer.echo(
-            f"interrupted; {written.out} holds the results so far, --resume continues", err=True
+            f"interrupted; {written.folder.path} holds the results so far, --resume continues",
+            err=True,
         )
         return False
     if not induction.is_finished:
@@ -277,20 +236,17 @@ class _Output:
 
     ledger: "InducedLedger"
     struck: "Sequence[Sequence[Edit]]"
-    out: Path
+    folder: "GrowthFolder"
     json_file: Path | None
     settings: Mapping[str, Any]
     began: float  # by the monotonic clock, in s
 
     def write(self, is_finished: bool = False, reached: dict[str, Any] | None = None) -> Path:
         """Write everything; return the path of the page. ``reached`` is the comparison."""
-        from grammar.notation.edits import to_data
         from recovery.induction.auto_record import record_of
-        from recovery.ledger.construct_file import text_of
         from reports.recovery.auto_page import write_auto_page
-        from support.files.atomic_write import write_atomic
 
-        ledger, out = self.ledger, self.out
+        ledger, out = self.ledger, self.folder.path
         record = record_of(
             ledger,
             self.settings,
@@ -300,17 +256,7 @@ class _Output:
         )
         if reached:
             _say_target(record)
-        folder = out / "constructs"
-        wanted = {f"{construct.id}.toml": construct for construct in ledger.constructs}
-        for file in folder.glob("*.toml") if folder.is_dir() else ():
-            if file.name not in wanted:
-                file.unlink()
-        for file_name, construct in wanted.items():
-            write_atomic(folder / file_name, text_of(construct).encode())
-        write_atomic(out / "start.g4", ledger.start.text.encode())
-        write_atomic(out / "grammar.g4", ledger.grammar.text.encode())
-        struck_data = [[to_data(edit) for edit in edits] for edits in self.struck]
-        write_atomic(out / "struck.json", json.dumps(struck_data).encode())
+        self.folder.write(ledger, self.struck)
         write_json(record, out / "auto.json")
         write_json(record, self.json_file)
         return write_auto_page(record, out)

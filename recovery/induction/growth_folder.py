@@ -1,0 +1,99 @@
+"""The folder of an automatic recovery: what it has reached, and what continues it.
+
+``start.g4`` and ``grammar.g4`` are the grammars, ``constructs/`` the steps between them,
+``struck.json`` the edits that must not be taken again, ``auto.json`` the record with the settings.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from grammar.notation.edits import Edit, from_data, to_data
+from grammar.notation.g4 import read_file
+from recovery.induction.induced_ledger import InducedLedger, without
+from recovery.ledger.construct import Construct
+from recovery.ledger.construct_file import text_of
+from recovery.ledger.ledger import Ledger, in_force
+from support.files.atomic_write import write_atomic
+from support.files.untrusted import json_of, read_bytes
+
+#: The settings of a growth, with those of a growth that has none.
+SETTINGS: Final[Mapping[str, Any]] = {
+    "start": "",
+    "without": (),
+    "held_out": (),
+    "hold_out": 0.0,
+    "seed": 1,
+    "suffix": "",
+    "negatives_path": "",
+    "negatives_sha256": "",
+    "target_path": "",
+    "target_sha256": "",
+}
+
+
+class GrowthFolderError(ValueError):
+    """A growth cannot be continued; the text is one line with the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class GrowthFolder:
+    """The folder at a path; reading raises `GrowthFolderError` or `LedgerError`."""
+
+    path: Path
+
+    def settings(self) -> dict[str, Any]:
+        """Return the settings with which the growth began, without those that its record lacks."""
+        file = self.path / "auto.json"
+        if not (file.is_file() and (self.path / "start.g4").is_file()):
+            raise GrowthFolderError(f"{self.path}: there is nothing to resume")
+        try:
+            record = json_of(read_bytes(file).decode())
+            if not isinstance(record, dict):
+                raise TypeError
+            known = {name: type(d)(record[name]) for name, d in SETTINGS.items() if name in record}
+            hash(tuple(known.values()))  # names of origins are texts
+        except (ValueError, TypeError):
+            raise GrowthFolderError(f"{file}: not the record of an automatic recovery") from None
+        return known
+
+    def continued(
+        self, strike: Sequence[str]
+    ) -> tuple[InducedLedger, list[tuple[Edit, ...]], list[Construct]]:
+        """Return where to continue without some constructs, by ID.
+
+        Then the edits that must not be taken again, and the constructs that are gone.
+        """
+        start = read_file(self.path / "start.g4")
+        constructs = list(Ledger.read(self.path / "constructs").constructs)
+        struck = [*self._struck(), *(one.edits for one in constructs if one.id in strike)]
+        left, gone = without(start, constructs, strike)
+        return InducedLedger(start, in_force(start, left), left), struck, gone
+
+    def _struck(self) -> list[tuple[Edit, ...]]:
+        file = self.path / "struck.json"
+        if not file.is_file():
+            return []
+        try:
+            known = json.loads(read_bytes(file))
+            return [tuple(from_data(edit) for edit in edits) for edits in known]
+        except (ValueError, TypeError, AttributeError) as error:
+            raise GrowthFolderError(f"{file}: {error}") from None
+
+    def write(self, ledger: InducedLedger, struck: Sequence[Sequence[Edit]]) -> None:
+        """Write all but the record; constructs that are gone are removed."""
+        folder = self.path / "constructs"
+        wanted = {f"{construct.id}.toml": construct for construct in ledger.constructs}
+        for file in folder.glob("*.toml") if folder.is_dir() else ():
+            if file.name not in wanted:
+                file.unlink()
+        for name, construct in wanted.items():
+            write_atomic(folder / name, text_of(construct).encode())
+        write_atomic(self.path / "start.g4", ledger.start.text.encode())
+        write_atomic(self.path / "grammar.g4", ledger.grammar.text.encode())
+        struck_data = [[to_data(edit) for edit in edits] for edits in struck]
+        write_atomic(self.path / "struck.json", json.dumps(struck_data).encode())
