@@ -8,8 +8,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-from conformance.sensitivity.case_selection import SeededFault
 from conformance.sensitivity.mutants import Mutant
+from conformance.sensitivity.seeded_faults import SeededFault
 
 _EQUIVALENT: Final = Path(__file__).with_name("equivalent.toml")
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from conformance.sensitivity.trial import is_possible
+from conformance.sensitivity.detection import is_possible
 from conformance.suite import case as cases
 from krl.cli import main
 
@@ -65,12 +65,12 @@ def test_laws_are_reported_one_by_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each law has its line and its place in the record; a broken one is status 1."""
-    from conformance.metamorphic import law, law_trials
+    from conformance.metamorphic import law, law_checks
 
-    right = law_trials.LAWS[0]
+    right = law_checks.LAWS[0]
     wrong = law.Law("wrong", "", (), lambda _left, _right: "they differ", right.change)
     for made, status in (((right,), 0), ((right, wrong), 1)):
-        monkeypatch.setattr(law_trials, "LAWS", made)
+        monkeypatch.setattr(law_checks, "LAWS", made)
         target = tmp_path / f"{status}.json"
         words = ["conform", "control/if_else", "--metamorphic", "1", "--jobs", "1"]
         assert status == main([*words, "--json", str(target)])

@@ -79,15 +79,15 @@ def conform(
     with expected_extras(*ARM):
         from conformance.evaluation.execution import Setup, missing
         from conformance.sensitivity.bench import mutants_record, planted_record, speed_of
+        from conformance.sensitivity.detection import (
+            detect_faults,
+            is_possible,
+            kept_detections,
+            reaches_of,
+        )
         from conformance.sensitivity.mutants import drawn
         from conformance.sensitivity.mutated_code import OF_CASES
         from conformance.sensitivity.planted_faults import FAULTS
-        from conformance.sensitivity.trial import (
-            is_possible,
-            kept_trials,
-            reaches_of,
-            try_faults,
-        )
         from conformance.suite.case import CaseError, find_cases
     if removed:
         return _removals(json_file, all_cores(jobs))
@@ -113,19 +113,21 @@ def conform(
             "faults need a system that can copy a process (fork): use --mutants 0 --group none"
         )
     began = time.perf_counter()
-    with kept_trials(cache) as store:
+    with kept_detections(cache) as store:
         running = [case for case in cases if case.phase == "run"] if every or faults else []
         with progress_bar("which lines cases run", len(running)) as bar:
             reaches = reaches_of(running, all_cores(jobs), bar, store)
         with progress_bar("trying mutants", len(every)) as bar:
-            trials = try_faults(every, reaches, all_cores(jobs), most, bar, store)
+            detections = detect_faults(every, reaches, all_cores(jobs), most, bar, store)
         with progress_bar("planting faults", len(faults)) as bar:
-            planted = try_faults(faults, reaches, all_cores(jobs), most, bar, store, executor.value)
+            planted = detect_faults(
+                faults, reaches, all_cores(jobs), most, bar, store, executor.value
+            )
     record |= planted_record(planted, executor.value)
     record["seconds"] = round(time.perf_counter() - began, 3)
     with progress_bar("timing cases", len(cases)) as bar:
         record |= speed_of(cases, bar)
-    by_mutant = dict(zip(every, trials, strict=True))
+    by_mutant = dict(zip(every, detections, strict=True))
     if every:
         record["drawn"] = mutants_record(
             {one: [by_mutant[mutant] for mutant in found] for one, found in wanted.items()}

@@ -61,8 +61,8 @@ def mutation(
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.model import GrammarError
-    from recovery.bench.assessment import assess_all, material_for
-    from recovery.bench.mutation import choose_mutants
+    from recovery.bench.damaged_grammars import choose_damaged
+    from recovery.bench.repair_assessment import assess_all, material_for
     from recovery.negatives.negatives import NegativeError
     from support.files.discovery import IngestError
 
@@ -70,7 +70,7 @@ def mutation(
     with as_input_errors(GrammarError, IngestError, NegativeError):
         whole = read_file(grammar or GRAMMAR)
         material = material_for(whole, paths or [_PROGRAMS], negatives_or_ours(negatives), seed)
-        chosen = choose_mutants(whole, singles, multiple, seed)
+        chosen = choose_damaged(whole, singles, multiple, seed)
         with progress_bar("assessing", len(chosen)) as bar:
             record = assess_all(material, chosen, jobs=all_cores(jobs), cache=cache, on_done=bar)
     record = {

@@ -26,7 +26,7 @@ def check_laws(
     scheduler: str | None,
 ) -> int:
     """Try every law, report each, and write the record; return 1 if one is broken."""
-    from conformance.metamorphic.law_trials import LAWS, record_of, try_laws
+    from conformance.metamorphic.law_checks import LAWS, record_of, try_laws
 
     need(*ARM)
     seed = 1

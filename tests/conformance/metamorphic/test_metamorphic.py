@@ -17,7 +17,7 @@ from conformance.metamorphic.comparison import (
     same_trace,
 )
 from conformance.metamorphic.law import Law, run_law
-from conformance.metamorphic.law_trials import LAWS, record_of, try_laws
+from conformance.metamorphic.law_checks import LAWS, record_of, try_laws
 from conformance.metamorphic.motion_programs import moving_program
 from conformance.metamorphic.subject import Program, Run
 from conformance.metamorphic.tree_rewriting import integer, rewritten

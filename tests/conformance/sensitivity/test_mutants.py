@@ -12,21 +12,22 @@ import numpy as np
 import pytest
 
 from conformance.evaluation.execution import Setup, observe
-from conformance.sensitivity import bench, trial
-from conformance.sensitivity.case_selection import around, candidates, uses_of
+from conformance.sensitivity import bench, detection
+from conformance.sensitivity.case_selection import candidates
+from conformance.sensitivity.detection import (
+    Detection,
+    Fate,
+    detect_faults,
+    is_possible,
+    kept_detections,
+    reaches_of,
+)
 from conformance.sensitivity.equivalents import equivalent, search_reason, searches
 from conformance.sensitivity.line_reach import Reach, is_alike, reach_of
 from conformance.sensitivity.mutants import Mutant, all_mutants, drawn, named
 from conformance.sensitivity.mutated_code import LEFT_OUT, modules, text_of
 from conformance.sensitivity.mutation_operators import changes
-from conformance.sensitivity.trial import (
-    Fate,
-    Trial,
-    is_possible,
-    kept_trials,
-    reaches_of,
-    try_faults,
-)
+from conformance.sensitivity.seeded_faults import around, uses_of
 from conformance.suite.case import CASES, Case, read_case
 from interp.controller.state import clock, declared_interrupts
 from interp.tree import statements as tree_statements
@@ -259,7 +260,7 @@ def test_what_becomes_of_a_mutant(case: str, function: str, was: str, now: str, 
     """The machine in C divides otherwise; an unsure rule is soft; one element is the last."""
     module, _, name = function.partition(":")
     mutant = _mutant(f"interp.{module}", name, was, now)
-    (found,) = try_faults([mutant], reach_of([_case(case)], _SETUP))
+    (found,) = detect_faults([mutant], reach_of([_case(case)], _SETUP))
     assert (fate, 1, 1) == (found.fate, found.reached, found.runs)
     assert ("" if fate == "equivalent" else case) == found.case == found.changed
 
@@ -291,7 +292,7 @@ def test_red_by_laws_of_the_simulator_only(
 ) -> None:
     """An arm that stops where it need not has another profile; one off its points breaks a rule."""
     mutant = _mutant(f"interp.robot.path.{module}", function, was, now)
-    (found,) = try_faults([mutant], reach_of([_case(case)], _SETUP))
+    (found,) = detect_faults([mutant], reach_of([_case(case)], _SETUP))
     assert ("red", by_profile) == (found.fate, found.by_profile)
 
 
@@ -322,43 +323,43 @@ def test_a_mutant_that_makes_a_case_fail() -> None:
     """It is red where the rule of the case is sure."""
     was, now = "self.now + duration", "self.now - duration"
     mutant = _mutant("interp.controller.state.clock", "Clock.tick_after", was, now)
-    (found,) = try_faults([mutant], reach_of([_case("advance/wait_sec_stops")], _SETUP))
+    (found,) = detect_faults([mutant], reach_of([_case("advance/wait_sec_stops")], _SETUP))
     assert "red" == found.fate
 
 
 @needs_fork
-def test_a_case_that_is_not_sure_does_not_end_the_trial() -> None:
+def test_a_case_that_is_not_sure_does_not_end_the_detection() -> None:
     """Two dialogues at a time are our reading; that one is answered by its button is not."""
     names = ("message/answer_beside_message", "message/answer_of_dialogue")
     was, panel = "self._messages.answer(button)", "interp.controller.inputs.operator_panel"
     mutant = _mutant(panel, "OperatorPanel.answer", was, "pass")
     reaches = reach_of([_case(name) for name in names], _SETUP)
-    found = [try_faults([mutant], reaches[:count])[0] for count in (1, 2)]
+    found = [detect_faults([mutant], reaches[:count])[0] for count in (1, 2)]
     assert [("soft", names[0]), ("red", names[1])] == [(one.fate, one.case) for one in found]
 
 
 @needs_fork
 def test_a_case_that_takes_too_long_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:
     """So much computing is more than any case may take where it may take next to none."""
-    monkeypatch.setattr(trial, "_SECONDS", 1e-6)
+    monkeypatch.setattr(detection, "_SECONDS", 1e-6)
     mutant = _mutant("interp.values.operators", "_divided", "left / right", "left * right")
-    (found,) = try_faults([mutant], reach_of([_case("data/int_division")], _SETUP))
+    (found,) = detect_faults([mutant], reach_of([_case("data/int_division")], _SETUP))
     assert ("red", "data/int_division") == (found.fate, found.case)
     assert "seconds of computing" in found.why
 
 
 @needs_fork
 def test_what_is_kept_is_not_tried_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A run that goes on takes over lines and trials, and has the same result."""
+    """A run that goes on takes over lines and detections, and has the same result."""
     mutants = [named("interp.controller.state.clock:0"), named("interp.controller.state.clock:1")]
     cases = [_case("control/if_else")]
 
-    def tried() -> list[Trial[Mutant]]:
-        with kept_trials(tmp_path) as store:
-            return try_faults(mutants, reaches_of(cases, store=store), store=store)
+    def tried() -> list[Detection[Mutant]]:
+        with kept_detections(tmp_path) as store:
+            return detect_faults(mutants, reaches_of(cases, store=store), store=store)
 
     first = tried()
-    for name in ("conformance.sensitivity.line_reach._reach", f"{trial.__name__}._tried"):
+    for name in ("conformance.sensitivity.line_reach._reach", f"{detection.__name__}._tried"):
         monkeypatch.setattr(name, None)
     assert first == tried()
 
@@ -367,7 +368,7 @@ def test_what_is_kept_is_not_tried_again(tmp_path: Path, monkeypatch: pytest.Mon
 def test_a_mutant_whose_lines_no_case_runs_survives() -> None:
     """It is not tried on a case that cannot notice it."""
     mutant = _mutant("interp.values.operators", "_divided", "right == 0", "right != 0")
-    (found,) = try_faults([mutant], reach_of([_case("control/if_else")], _SETUP))
+    (found,) = detect_faults([mutant], reach_of([_case("control/if_else")], _SETUP))
     assert ("survived", 0, 0) == (found.fate, found.reached, found.runs)
 
 
@@ -399,7 +400,7 @@ def test_no_change_of_a_line_can_be_noticed() -> None:
     fates = []
     for was, now in (("1", "2"), ("1", "0"), slices):
         mutant = _mutant("interp.tree.run", "ProgramState.asked", was, now)
-        fates.append(trial._if_equivalent(Trial(mutant, "survived")).fate)
+        fates.append(detection._if_equivalent(Detection(mutant, "survived")).fate)
     assert ["equivalent", "equivalent", "survived"] == fates
 
 
@@ -415,8 +416,8 @@ def test_no_change_of_a_line_can_be_noticed() -> None:
 def test_a_search_may_go_another_way(reached: int, runs: int, changed: str, fate: Fate) -> None:
     """A change of one is equivalent where all cases that run it did, and saw nothing else."""
     mutant = _mutant("interp.robot.planning.ramps", "bisected", "2.0", "3.0")
-    one = Trial(mutant, "survived", reached=reached, runs=runs, changed=changed)
-    assert fate == trial._if_equivalent(one).fate
+    one = Detection(mutant, "survived", reached=reached, runs=runs, changed=changed)
+    assert fate == detection._if_equivalent(one).fate
 
 
 def test_a_search_is_tried_on_all_cases() -> None:
@@ -437,7 +438,7 @@ def test_shares_are_of_what_could_be_noticed() -> None:
     """Equivalent and invalid mutants count neither as found nor as missed."""
     mutant = named("interp.values.values:0")
     fates: tuple[Fate, ...] = ("red", "red", "soft", "survived", "equivalent", "invalid")
-    record = bench.mutants_record({7: [Trial(mutant, fate) for fate in fates]})
+    record = bench.mutants_record({7: [Detection(mutant, fate) for fate in fates]})
     assert (6, 2, 0.5) == (record["mutants"], record["red"], record["share"])
     assert [("values", 0.5)] == [(one["package"], one["share"]) for one in record["packages"]]
     assert [(7, 0.5)] == [

@@ -8,25 +8,27 @@ from pathlib import Path
 
 import pytest
 
-from conformance.sensitivity import bench, trial
+from conformance.sensitivity import bench, detection
+from conformance.sensitivity.detection import Detection, detect_faults, is_possible, reaches_of
 from conformance.sensitivity.planted_faults import FAULTS, Fault
-from conformance.sensitivity.trial import Trial, is_possible, reaches_of, try_faults
 from conformance.suite.case import CASES, read_case
 from interp.controller.scheduler import Scheduler
 from interp.controller.state.clock import Clock
 from interp.executors import is_available
 from interp.tree.statements import Statements
 
-pytestmark = pytest.mark.skipif(not is_possible(), reason="a trial forks a process")
+pytestmark = pytest.mark.skipif(not is_possible(), reason="a detection forks a process")
 
 
 def _fault(words: str) -> Fault:
     return next(one for one in FAULTS if one.words == words)
 
 
-def _trials(faults: Sequence[Fault], *names: str, executor: str = "tree") -> list[Trial[Fault]]:
+def _detections(
+    faults: Sequence[Fault], *names: str, executor: str = "tree"
+) -> list[Detection[Fault]]:
     cases = [read_case(CASES / f"{name}.src", CASES) for name in names]
-    return try_faults(faults, reaches_of(cases), executor=executor)
+    return detect_faults(faults, reaches_of(cases), executor=executor)
 
 
 def test_a_fault_is_there_only_while_it_is_planted() -> None:
@@ -46,21 +48,21 @@ def test_a_fault_is_there_only_while_it_is_planted() -> None:
     assert 24_000 == clock.tick_after(23_000)
 
 
-def test_a_trial_that_tells_nothing_is_a_defect(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_detection_that_tells_nothing_is_a_defect(monkeypatch: pytest.MonkeyPatch) -> None:
     """A process that ends before its first case is reported, and not taken for a survivor."""
-    monkeypatch.setattr(trial, "_outcomes", lambda *_: 1 / 0)
+    monkeypatch.setattr(detection, "_outcomes", lambda *_: 1 / 0)
     with pytest.raises(RuntimeError, match="ended before the first case"):
-        _trials([_fault("only the last trigger counts")], "trigger/two_at_once")
+        _detections([_fault("only the last trigger counts")], "trigger/two_at_once")
 
 
-def test_trials_keep_the_memory_limit_that_is_given() -> None:
-    """In a nightly run each process has a limit, which a trial may lower and not raise."""
+def test_detections_keep_the_memory_limit_that_is_given() -> None:
+    """In a nightly run each process has a limit, which a detection may lower and not raise."""
     import resource  # not on every system
 
     if not (child := os.fork()):
         try:
             resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))
-            (found,) = _trials([_fault("only the last trigger counts")], "trigger/two_at_once")
+            (found,) = _detections([_fault("only the last trigger counts")], "trigger/two_at_once")
             os._exit(found.fate != "red")
         finally:
             os._exit(2)
@@ -84,7 +86,7 @@ def test_no_two_faults_have_the_same_name() -> None:
 )
 def test_a_case_finds_a_fault(words: str, case: str) -> None:
     """A case that passes as things are does not with the fault."""
-    (found,) = _trials([_fault(words)], case, "control/if_else")
+    (found,) = _detections([_fault(words)], case, "control/if_else")
     assert (case, 1) == (found.case, found.reached)
     assert found.fate in ("red", "soft")
 
@@ -96,25 +98,25 @@ def test_a_case_finds_a_fault_under_native_code(
     """The executor that is asked for runs the case with the fault."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     fault = _fault("a number is declared once and for all")
-    (found,) = _trials([fault], "interrupt/declared_anew", executor="compiled")
+    (found,) = _detections([fault], "interrupt/declared_anew", executor="compiled")
     assert ("interrupt/declared_anew", "red") == (found.case, found.fate)
     assert [] != list(tmp_path.rglob("*.so"))
 
 
-def test_trials_do_not_depend_on_the_number_of_processes() -> None:
+def test_detections_do_not_depend_on_the_number_of_processes() -> None:
     """Progress is reported for each fault."""
     names = ("io/anout_follows", "control/if_else")
     reaches = reaches_of([read_case(CASES / f"{name}.src", CASES) for name in names])
     done: list[int] = []
-    alone = try_faults(FAULTS[:3], reaches, 1, on_done=done.append)
+    alone = detect_faults(FAULTS[:3], reaches, 1, on_done=done.append)
     assert [0, 1, 1, 1] == done
-    assert alone == try_faults(FAULTS[:3], reaches, 2)
+    assert alone == detect_faults(FAULTS[:3], reaches, 2)
 
 
 def test_a_fault_that_changes_nothing_survives() -> None:
     """It is reported with the number of cases that were run."""
     nothing = Fault("none", "nothing", Statements, "_if", partialmethod)
-    (found,) = _trials([nothing], "control/recursion", "control/if_else")
+    (found,) = _detections([nothing], "control/recursion", "control/if_else")
     assert ("survived", 2) == (found.fate, found.runs)
     record = bench.planted_record([found], "tree")
     assert [{"group": "none", "fault": "nothing", "runs": 2}] == record["survivors"]
@@ -123,7 +125,7 @@ def test_a_fault_that_changes_nothing_survives() -> None:
 
 def test_a_run_without_end_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """A fault that makes a program run for ever is noticed by the limit of processor time."""
-    monkeypatch.setattr(trial, "_SECONDS", 1.0)
+    monkeypatch.setattr(detection, "_SECONDS", 1.0)
 
     def make(_right: object) -> object:
         def settle(self: Scheduler) -> None:
@@ -133,5 +135,5 @@ def test_a_run_without_end_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
         return settle
 
     endless = Fault("none", "endless", Scheduler, "_settle", make)
-    (found,) = _trials([endless], "control/recursion")
+    (found,) = _detections([endless], "control/recursion")
     assert ("control/recursion", "red") == (found.case, found.fate)

@@ -1,4 +1,4 @@
-"""Mutants of a grammar, which measure how well the survey finds what is missing.
+"""Damaged grammars, which measure how well the survey finds what is missing.
 
 There is no official grammar to compare with. So a grammar that reads a corpus loses a rule, an
 alternative, an optional part or a keyword. The survey of the same corpus has to notice it, name the
@@ -25,7 +25,7 @@ from grammar.notation.model import Element, Grammar, GrammarError, Literal, Refe
 
 
 @dataclass(frozen=True, slots=True)
-class Mutant:
+class DamagedGrammar:
     """A damaged grammar: what was taken out, in how many parts, and of which rules."""
 
     kind: str
@@ -46,10 +46,10 @@ class Mutant:
         return f"{self.kind}: " + "; ".join(describe(whole, e) for e in self.edits[:2])
 
 
-# ------------------------------------------------------------------------------ making mutants
+# ------------------------------------------------------------------------------ damaging
 
 
-def mutants(grammar: Grammar) -> Iterator[Mutant]:
+def damaged_grammars(grammar: Grammar) -> Iterator[DamagedGrammar]:
     """Yield every grammar with one element removed from its parser rules that is still valid."""
     for rule in grammar.parser_rules:
         if rule.name != grammar.start:
@@ -70,14 +70,14 @@ def mutants(grammar: Grammar) -> Iterator[Mutant]:
 
 def _made(
     kind: str, grammar: Grammar, edits: Sequence[Edit] | None, rules: set[str]
-) -> Iterator[Mutant]:
+) -> Iterator[DamagedGrammar]:
     if edits is None:
         return
     try:
         damaged = read(apply(grammar, edits).text)
     except GrammarError:
         return
-    yield Mutant(kind, tuple(edits), frozenset(rules), damaged)
+    yield DamagedGrammar(kind, tuple(edits), frozenset(rules), damaged)
 
 
 def _users(grammar: Grammar, name: str) -> list[tuple[str, tuple[int, ...], int]]:
@@ -135,7 +135,7 @@ def _without_rule(grammar: Grammar, name: str) -> list[Edit] | None:
     return None if removals is None else [*removals, RemoveRule(name)]
 
 
-def _without_keywords(grammar: Grammar) -> Iterator[Mutant]:
+def _without_keywords(grammar: Grammar) -> Iterator[DamagedGrammar]:
     """Grammars that do not know a keyword: it reads as a name, and what needs it is gone."""
     for rule in grammar.rules:
         if not rule.is_lexer or rule.is_fragment or not rule.text.startswith(f"{rule.name} : '"):
@@ -149,10 +149,12 @@ def _without_keywords(grammar: Grammar) -> Iterator[Mutant]:
             yield from _made("keyword", grammar, [*removals, RemoveRule(rule.name)], users)
 
 
-def combined(singles: Sequence[Mutant], grammar: Grammar, count: int, seed: int) -> list[Mutant]:
-    """Mutants with two or three things taken out, of different rules."""
+def combined(
+    singles: Sequence[DamagedGrammar], grammar: Grammar, count: int, seed: int
+) -> list[DamagedGrammar]:
+    """Grammars with two or three things taken out, of different rules."""
     chance = random.Random(seed)
-    out: list[Mutant] = []
+    out: list[DamagedGrammar] = []
     for _ in range(count * 20):
         if len(out) >= count:
             break
@@ -163,13 +165,15 @@ def combined(singles: Sequence[Mutant], grammar: Grammar, count: int, seed: int)
         edits = [e for m in chosen for e in m.edits]
         names = frozenset[str]().union(*(m.rules for m in chosen))
         made = _made(f"{len(chosen)} parts", grammar, edits, set(names))
-        out += (replace(mutant, parts=len(chosen)) for mutant in made)
+        out += (replace(damaged, parts=len(chosen)) for damaged in made)
     return out
 
 
-def choose_mutants(grammar: Grammar, singles: int, multiple: int, seed: int) -> list[Mutant]:
-    """All single mutants, or ``singles`` of them drawn, and ``multiple`` with several parts out."""
-    every = list(mutants(grammar))
+def choose_damaged(
+    grammar: Grammar, singles: int, multiple: int, seed: int
+) -> list[DamagedGrammar]:
+    """All that lack one part, or ``singles`` of them drawn, and ``multiple`` that lack several."""
+    every = list(damaged_grammars(grammar))
     drawn = every
     if singles and singles < len(every):
         drawn = random.Random(seed).sample(every, singles)

@@ -1,4 +1,4 @@
-"""Trials of laws on cases and on generated programs, with their results."""
+"""Laws checked on cases and on generated programs, with the results."""
 
 from __future__ import annotations
 

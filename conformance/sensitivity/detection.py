@@ -1,7 +1,7 @@
-"""Trial of seeded faults: which drawn mutants and planted faults make a case fail.
+"""Detection of seeded faults: which drawn mutants and planted faults make a case fail.
 
 Each fault is planted in a process of its own, a fork of one that has loaded everything, so that it
-has no effect on later trials. The cases that run one of its lines are run with it until one fails.
+has no effect on the next one. The cases that run one of its lines are run with it until one fails.
 A case also fails if it takes many times as long as any case should, or if the machine in C, which
 is not changed, does something else than the tree interpreter.
 """
@@ -26,11 +26,12 @@ from conformance.evaluation.case_run import observed_within, run_case
 from conformance.evaluation.execution import Setup, missing, observe
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.verdicts import KnownFailures
-from conformance.sensitivity.case_selection import Candidates, SeededFault, candidates, uses_of
+from conformance.sensitivity.case_selection import Candidates, candidates
 from conformance.sensitivity.code_exchange import InvalidMutant, load
 from conformance.sensitivity.equivalents import equivalent, search_reason
 from conformance.sensitivity.line_reach import NOTHING_KEPT, Reach, is_alike, reach_of, seen_digest
 from conformance.sensitivity.mutants import Mutant
+from conformance.sensitivity.seeded_faults import SeededFault, uses_of
 from conformance.suite.case import Case
 from support.files.code_digest import code_digest
 from support.files.result_store import ResultStore
@@ -45,8 +46,8 @@ _ROBOT: Final = "kinematic"
 _IN_C: Final = Setup("native", _ROBOT)
 #: Modules of which the machine in C has its own: it is run beside the tree interpreter.
 _APART: Final = ("interp.values.", "interp.tree.")
-#: The fields of a trial but for its fault.
-OF_TRIAL: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed", "by_profile")
+#: The fields of a detection but for its fault.
+OF_DETECTION: Final = ("fate", "case", "why", "reached", "sure", "runs", "changed", "by_profile")
 #: The largest number of cases that may fail which are run with a fault.
 MOST: Final = 1000
 #: The limit of processor time for a case in s: five times what any needs on a busy machine.
@@ -56,7 +57,7 @@ _MEMORY: Final = 4 << 30
 
 
 @dataclass(frozen=True, slots=True)
-class Trial(Generic[_Fault]):
+class Detection(Generic[_Fault]):
     """The outcome of a seeded fault.
 
     ``case`` is the case that noticed it, and ``why`` what that case reported, or for an equivalent
@@ -81,8 +82,8 @@ def is_possible() -> bool:
     return hasattr(os, "fork") and find_spec("resource") is not None
 
 
-def kept_trials(folder: Path | None) -> ResultStore:
-    """Return the store in a folder of what trials of seeded faults found, as a context manager.
+def kept_detections(folder: Path | None) -> ResultStore:
+    """Return the store of detections in a folder, as a context manager.
 
     It holds for this code only.
     """
@@ -101,7 +102,7 @@ def reaches_of(
 
     Cases that may fail come first, then one of each suite in turn, in each suite those first that
     have most expectations for what they cost. Cases that do not pass are left out. ``on_done`` is
-    called with the number of finished cases. ``store`` is that of `kept_trials`.
+    called with the number of finished cases. ``store`` is that of `kept_detections`.
     """
     running = [case for case in cases if case.phase == "run"]
     places: Counter[tuple[bool, str]] = Counter()
@@ -118,7 +119,7 @@ def _price(reach: Reach) -> tuple[float, str]:
     return reach.cost / len(reach.case.expectations), reach.case.name
 
 
-def try_faults(
+def detect_faults(
     faults: Sequence[_Fault],
     reaches: Sequence[Reach],
     jobs: int = 1,
@@ -126,57 +127,57 @@ def try_faults(
     on_done: Callable[[int], None] = lambda _count: None,
     store: ResultStore = NOTHING_KEPT,
     executor: str = "tree",
-) -> list[Trial[_Fault]]:
-    """Return the trials of faults in their order, the same for any ``jobs``.
+) -> list[Detection[_Fault]]:
+    """Return whether faults are detected, in their order; the same for any ``jobs``.
 
     If more cases than ``most`` that may fail run the lines of a fault, only so many are tried.
-    ``executor`` runs the cases. ``on_done`` is called with the number of finished trials. ``store``
-    is that of `kept_trials`: what it has for the same cases is not tried again.
+    ``executor`` runs the cases. ``on_done`` is called with the number of finished faults. ``store``
+    is that of `kept_detections`: what it has for the same cases is not tried again.
     """
     key_of = [(most, executor), *((one.case.name, one.case.digest, one.seen) for one in reaches)]
     tried = hashlib.sha256(repr(key_of).encode()).hexdigest()
-    keys = [f"trial {one.name} {tried}" for one in faults]
-    found: dict[str, Trial[_Fault]] = {}
+    keys = [f"{one.name} {tried}" for one in faults]
+    found: dict[str, Detection[_Fault]] = {}
     for one, key in zip(faults, keys, strict=True):
         row = store.get_record(key)
         if row is not None:
-            found[one.name] = Trial(one, **row)
+            found[one.name] = Detection(one, **row)
     on_done(len(found))
     new = [one for one in faults if one.name not in found]
     tasks = (
         (one, candidates(one, reaches, most, is_search=bool(search_reason(one))), executor)
         for one in new
     )
-    for trial in ordered_map(_tried, tasks, jobs=jobs):
-        found[trial.fault.name] = trial
-        row = {each: getattr(trial, each) for each in OF_TRIAL}
-        store.put([(f"trial {trial.fault.name} {tried}", row)])
+    for detection in ordered_map(_tried, tasks, jobs=jobs):
+        found[detection.fault.name] = detection
+        row = {each: getattr(detection, each) for each in OF_DETECTION}
+        store.put([(f"{detection.fault.name} {tried}", row)])
         on_done(1)
     return [_if_equivalent(found[one.name]) for one in faults]
 
 
-def _if_equivalent(trial: Trial[_Fault]) -> Trial[_Fault]:
-    """Return a trial, as equivalent if its fault survived and is known to change nothing."""
-    fault = trial.fault
-    if trial.fate != "survived" or not isinstance(fault, Mutant):
-        return trial
+def _if_equivalent(detection: Detection[_Fault]) -> Detection[_Fault]:
+    """Return a detection, as equivalent if its fault survived and is known to change nothing."""
+    fault = detection.fault
+    if detection.fate != "survived" or not isinstance(fault, Mutant):
+        return detection
     known = equivalent()
     reason = known.get(fault.change) or known.get(fault.change[:3], "")
-    if not reason and 0 < trial.runs == trial.reached and not trial.changed:
+    if not reason and 0 < detection.runs == detection.reached and not detection.changed:
         reason = search_reason(fault)
-    return replace(trial, fate="equivalent", why=reason) if reason else trial
+    return replace(detection, fate="equivalent", why=reason) if reason else detection
 
 
 # -------------------------------------------------------------------------- one fault, one process
 
 
-def _tried(fault: _Fault, cases: Candidates, executor: str) -> Trial[_Fault]:
+def _tried(fault: _Fault, cases: Candidates, executor: str) -> Detection[_Fault]:
     """Try a fault in a fork of this process; the last outcome that it sends is the result."""
-    trial = Trial(fault, "survived")
+    detection = Detection(fault, "survived")
     if not any(uses_of(fault).values()):
-        return replace(trial, fate="invalid", why="it is used only while modules are loaded")
+        return replace(detection, fate="invalid", why="it is used only while modules are loaded")
     if not cases.tried:
-        return trial
+        return detection
     _load(cases.tried[0].case)
     reading, writing = os.pipe()
     child = os.fork()
@@ -191,7 +192,7 @@ def _tried(fault: _Fault, cases: Candidates, executor: str) -> Trial[_Fault]:
     os.waitpid(child, 0)
     if not outcome:
         raise RuntimeError(f"{fault.name}: its process ended before the first case")
-    return Trial(fault, reached=cases.reached, sure=cases.sure, **outcome)
+    return Detection(fault, reached=cases.reached, sure=cases.sure, **outcome)
 
 
 @cache
@@ -220,7 +221,7 @@ def _in_fork(fault: SeededFault, cases: Candidates, executor: str, pipe: int) ->
 def _outcomes(fault: SeededFault, cases: Candidates, executor: str) -> Iterator[dict[str, Any]]:
     """Yield before each case the outcome if it ends the process, and at last the real outcome.
 
-    An outcome has the fields of `Trial`.
+    An outcome has the fields of `Detection`.
     """
     import resource  # not on every system
 
@@ -274,7 +275,7 @@ def _outcomes(fault: SeededFault, cases: Candidates, executor: str) -> Iterator[
 def _noticed(
     case: Case, first: Observation, setups: Sequence[Setup]
 ) -> tuple[Fate | None, str, bool]:
-    """Return how a case notices the fault that is planted, why, and `Trial.by_profile`.
+    """Return how a case notices the fault that is planted, why, and `Detection.by_profile`.
 
     ``first`` is what was observed with the first setup.
     """

@@ -1,4 +1,4 @@
-"""Assessment of the survey on a damaged grammar (`recovery.bench.mutation`), mutant by mutant."""
+"""How well the survey repairs damaged grammars (`recovery.bench.damaged_grammars`)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from grammar.notation.edits import (
 from grammar.notation.model import Grammar, referred
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
-from recovery.bench.mutation import Mutant
+from recovery.bench.damaged_grammars import DamagedGrammar
 from recovery.clustering.cluster import Clusters, cluster
 from recovery.clustering.edit_merging import combined_edits
 from recovery.clustering.edit_trial import edited
@@ -48,9 +48,9 @@ _TEXTS_COMPARED = 60
 
 @dataclass(frozen=True, slots=True)
 class Assessment:
-    """How the tool did on one mutant; see `assess` for what each field means."""
+    """How the tool did on one damaged grammar; see `assess` for what each field means."""
 
-    mutant: Mutant
+    damaged: DamagedGrammar
     detected: bool
     rule_rank: int | None
     item_rank: int | None
@@ -63,7 +63,7 @@ class Assessment:
 
 @dataclass(frozen=True)
 class BenchMaterial:
-    """What mutants are assessed on.
+    """What damaged grammars are assessed on.
 
     ``shown`` are programs (path, text) the tool sees, ``held_out`` texts it does not; all are read
     by ``grammar``. ``negatives`` are programs that no grammar may accept.
@@ -80,8 +80,8 @@ class BenchMaterial:
         return NegativeSet(self.negatives).rejected_by(Recognizer(self.grammar))
 
 
-def assess(mutant: Mutant, material: BenchMaterial) -> Assessment:
-    """Survey the programs shown under the mutant and see how the tool does.
+def assess(damaged: DamagedGrammar, material: BenchMaterial) -> Assessment:
+    """Survey the programs shown under the damaged grammar and see how the tool does.
 
     - detected: some program that the grammar reads fails, or the lost keyword is suspected
       (`recovery.survey.unreserved_keywords`) where it is read as a name.
@@ -97,20 +97,20 @@ def assess(mutant: Mutant, material: BenchMaterial) -> Assessment:
     - seconds: of processor time, for the survey and the search.
     """
     began = time.process_time()
-    found = survey_texts(material.shown, mutant.grammar)
+    found = survey_texts(material.shown, damaged.grammar)
     failing = [f for f in found.files if f.failures]
     if not failing:
-        noticed = any(one.word in mutant.keywords for one in found.unreserved)
+        noticed = any(one.word in damaged.keywords for one in found.unreserved)
         seconds = time.process_time() - began
-        return Assessment(mutant, noticed, None, None, None, int(noticed), 0, (), seconds)
+        return Assessment(damaged, noticed, None, None, None, int(noticed), 0, (), seconds)
     texts_of = dict(material.shown)
     clusters = cluster(
         found,
-        count_negatives=negative_counter(mutant.grammar, material.negatives),
+        count_negatives=negative_counter(damaged.grammar, material.negatives),
         text_of=lambda file: texts_of[file.digest],
     )
     seconds = time.process_time() - began
-    base = Recognizer(mutant.grammar)
+    base = Recognizer(damaged.grammar)
     ordered = list(_proposals(clusters))
     reducer = Reducer(base)
     tokens = []
@@ -121,12 +121,12 @@ def assess(mutant: Mutant, material: BenchMaterial) -> Assessment:
     texts = [*texts_of.values(), *material.held_out]
     best = edited(base, ordered[0]) if ordered else None
     return Assessment(
-        mutant,
+        damaged,
         True,
-        _rank(ordered, lambda edits: _names(edits, mutant, material.grammar)),
-        _rank(ordered, lambda edits: _same_place(edits, mutant)),
+        _rank(ordered, lambda edits: _names(edits, damaged, material.grammar)),
+        _rank(ordered, lambda edits: _same_place(edits, damaged)),
         _rank(ordered, lambda edits: _repairs(base, edits, texts))
-        if mutant.parts == 1
+        if damaged.parts == 1
         else _repaired_together(base, clusters, texts),
         len(clusters.ranked),
         0 if best is None else len(material.rejected.accepted(best)),
@@ -148,22 +148,22 @@ def _rank(
     return next((i for i, edits in enumerate(ordered[:5], 1) if good(edits)), None)
 
 
-def _names(edits: Sequence[Edit], mutant: Mutant, whole: Grammar) -> bool:
+def _names(edits: Sequence[Edit], damaged: DamagedGrammar, whole: Grammar) -> bool:
     """Return whether an edit is in a rule that lost something, or calls a rule that is lost."""
-    damaged = {getattr(e, "rule", "") for e in mutant.edits} | mutant.rules
-    callers = {r.name for r in whole.parser_rules if not mutant.rules.isdisjoint(referred(r))}
+    rules = {getattr(e, "rule", "") for e in damaged.edits} | damaged.rules
+    callers = {r.name for r in whole.parser_rules if not damaged.rules.isdisjoint(referred(r))}
     place = getattr(edits[-1], "rule", "")
-    return place in damaged or (mutant.kind in ("rule", "keyword") and place in callers)
+    return place in rules or (damaged.kind in ("rule", "keyword") and place in callers)
 
 
-def _same_place(edits: Sequence[Edit], mutant: Mutant) -> bool:
+def _same_place(edits: Sequence[Edit], damaged: DamagedGrammar) -> bool:
     """Return whether an edit is in the rule and at the place where something was removed.
 
     A removed alternative is replaced by an alternative of that rule, a removed part between the
     elements on both sides of it.
     """
     edit = edits[-1]
-    for removed in mutant.edits:
+    for removed in damaged.edits:
         if isinstance(removed, RemoveAlternative):
             if isinstance(edit, AddAlternative | Widen | Insert | MakeOptional) and (
                 edit.rule == removed.rule
@@ -273,53 +273,53 @@ def material_for(
 
 def assess_all(
     material: BenchMaterial,
-    chosen: Sequence[Mutant],
+    chosen: Sequence[DamagedGrammar],
     *,
     jobs: int = 1,
     cache: Path | None = None,
     on_done: Progress = no_progress,
 ) -> dict[str, Any]:
-    """Assess mutants in ``jobs`` processes and gather the figures; see `assess`.
+    """Assess damaged grammars in ``jobs`` processes and gather the figures; see `assess`.
 
     Each assessment is kept in the folder ``cache``, so that a bench continues where it ended.
     """
     found: dict[int, Assessment] = {}
-    with ResultStore(cache, f"mutants {key_of(material.grammar)}") as store:
+    with ResultStore(cache, f"damaged grammars {key_of(material.grammar)}") as store:
         given = _digest(material.shown, material.held_out, [n.text for n in material.negatives])
-        keys = [_digest(given, mutant.edits) for mutant in chosen]
-        for number, (mutant, key) in enumerate(zip(chosen, keys, strict=True)):
+        keys = [_digest(given, damaged.edits) for damaged in chosen]
+        for number, (damaged, key) in enumerate(zip(chosen, keys, strict=True)):
             kept = store.get_record(key)
             if kept is not None:
                 tokens = tuple(kept.pop("reproducer_tokens"))
-                found[number] = Assessment(mutant, reproducer_tokens=tokens, **kept)
+                found[number] = Assessment(damaged, reproducer_tokens=tokens, **kept)
         on_done(len(found))
         left = [number for number in range(len(chosen)) if number not in found]
         for number, assessment in zip(left, _assessed(material, chosen, left, jobs), strict=True):
             found[number] = assessment
             record = {f.name: getattr(assessment, f.name) for f in fields(assessment)}
-            store.put([(keys[number], {n: v for n, v in record.items() if n != "mutant"})])
+            store.put([(keys[number], {n: v for n, v in record.items() if n != "damaged"})])
             on_done(1)
     assessments = [found[number] for number in range(len(chosen))]
     count = len(NegativeSet(material.negatives))
     return {
         **figures(assessments, count),
         "by_kind": {
-            kind: figures([v for v in assessments if v.mutant.kind == kind], count)
-            for kind in sorted({v.mutant.kind for v in assessments})
+            kind: figures([v for v in assessments if v.damaged.kind == kind], count)
+            for kind in sorted({v.damaged.kind for v in assessments})
         },
         "assessments": [_ranks(v, material.grammar) for v in assessments],
     }
 
 
 def _assessed(
-    material: BenchMaterial, chosen: Sequence[Mutant], numbers: Sequence[int], jobs: int
+    material: BenchMaterial, chosen: Sequence[DamagedGrammar], numbers: Sequence[int], jobs: int
 ) -> Iterator[Assessment]:
-    mutants = [chosen[number] for number in numbers]
+    grammars = [chosen[number] for number in numbers]
     if jobs == 1:
-        yield from (assess(mutant, material) for mutant in mutants)
-    elif mutants:
+        yield from (assess(damaged, material) for damaged in grammars)
+    elif grammars:
         with process_pool(jobs, _prepare, material) as pool:
-            yield from pool.map(_assess, mutants)
+            yield from pool.map(_assess, grammars)
 
 
 def _digest(*given: object) -> str:
@@ -333,13 +333,13 @@ def _prepare(material: BenchMaterial) -> None:
     _materials.append(material)
 
 
-def _assess(mutant: Mutant) -> Assessment:
-    return assess(mutant, _materials[0])
+def _assess(damaged: DamagedGrammar) -> Assessment:
+    return assess(damaged, _materials[0])
 
 
 def _ranks(assessment: Assessment, whole: Grammar) -> dict[str, Any]:
     return {
-        "mutant": assessment.mutant.title(whole),
+        "mutant": assessment.damaged.title(whole),
         "detected": assessment.detected,
         "rule_rank": assessment.rule_rank,
         "item_rank": assessment.item_rank,
@@ -365,7 +365,7 @@ def figures(assessments: Sequence[Assessment], negative_count: int) -> dict[str,
             for name, found in ranks.items()
             for n in (1, 5)
         },
-        "clusters_per_cause": _mean([v.clusters / v.mutant.parts for v in seen], 3),
+        "clusters_per_cause": _mean([v.clusters / v.damaged.parts for v in seen], 3),
         "false_accept": _mean([v.false_accepts / max(1, negative_count) for v in seen], 5),
         "reproducer_median_tokens": statistics.median(tokens) if tokens else None,
         "seconds_per_mutant": _mean([v.seconds for v in assessments], 3),

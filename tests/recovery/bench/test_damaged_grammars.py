@@ -1,4 +1,4 @@
-"""Mutants of a grammar, and how the tool does on them."""
+"""Damaged grammars, and how the tool does on them."""
 
 from collections import Counter
 from collections.abc import Callable
@@ -11,8 +11,14 @@ import pytest
 from grammar.notation import g4
 from grammar.notation.edits import AddAlternative
 from grammar.parser.recognizer import Recognizer
-from recovery.bench import assessment
-from recovery.bench.assessment import (
+from recovery.bench import repair_assessment
+from recovery.bench.damaged_grammars import (
+    DamagedGrammar,
+    choose_damaged,
+    combined,
+    damaged_grammars,
+)
+from recovery.bench.repair_assessment import (
     Assessment,
     BenchMaterial,
     assess,
@@ -20,7 +26,6 @@ from recovery.bench.assessment import (
     covering,
     figures,
 )
-from recovery.bench.mutation import Mutant, choose_mutants, combined, mutants
 from recovery.clustering.cause import Proposal
 from recovery.clustering.cluster import Clusters, cluster
 
@@ -56,8 +61,8 @@ PROGRAMS = [
 
 
 @pytest.fixture(scope="module")
-def every() -> list[Mutant]:
-    return list(mutants(SMALL))
+def every() -> list[DamagedGrammar]:
+    return list(damaged_grammars(SMALL))
 
 
 @pytest.fixture(scope="module")
@@ -68,33 +73,33 @@ def material() -> BenchMaterial:
     return BenchMaterial(SMALL, numbered, tuple(PROGRAMS[1::2]), ())
 
 
-def test_every_kind_of_part_is_taken_out(every: list[Mutant]) -> None:
-    """Alternatives, optional parts and keywords each give mutants, and every one is a grammar."""
-    kinds = Counter(mutant.kind for mutant in every)
+def test_every_kind_of_part_is_taken_out(every: list[DamagedGrammar]) -> None:
+    """Alternatives, optional parts and keywords each give some, and every one is a grammar."""
+    kinds = Counter(damaged.kind for damaged in every)
     assert {"alternative", "optional part", "keyword"} <= set(kinds)
     assert all(g4.read(m.grammar.text) == m.grammar for m in every)
 
 
-def test_a_mutant_lacks_something(every: list[Mutant]) -> None:
-    """No mutant reads every program that the whole grammar reads, but where a word is swallowed."""
+def test_a_damaged_grammar_lacks_something(every: list[DamagedGrammar]) -> None:
+    """None reads every program that the whole grammar reads, but where a word is swallowed."""
     texts = [*PROGRAMS, *covering(SMALL)]
     blind = [m for m in every if all(map(Recognizer(m.grammar).accepts, texts))]
     assert all(m.keywords for m in blind)
 
 
-def test_several_parts_are_of_different_rules(every: list[Mutant]) -> None:
-    """Combined mutants lack two or three parts and say so."""
+def test_several_parts_are_of_different_rules(every: list[DamagedGrammar]) -> None:
+    """Combined ones lack two or three parts and say so."""
     several = combined(every, SMALL, 10, seed=3)
     assert {m.parts for m in several} <= {2, 3}
     assert several == combined(every, SMALL, 10, seed=3)
 
 
 def test_choosing_is_by_seed() -> None:
-    """The same seed draws the same mutants."""
-    assert choose_mutants(SMALL, 4, 2, 7) == choose_mutants(SMALL, 4, 2, 7)
+    """The same seed draws the same grammars."""
+    assert choose_damaged(SMALL, 4, 2, 7) == choose_damaged(SMALL, 4, 2, 7)
 
 
-def test_the_tool_finds_its_way_back(every: list[Mutant], material: BenchMaterial) -> None:
+def test_the_tool_finds_its_way_back(every: list[DamagedGrammar], material: BenchMaterial) -> None:
     """On this small grammar an alternative or part taken out is noticed and put back."""
     wanted = [m for m in every if m.kind == "alternative" and "halt" not in m.title(SMALL)]
     record = assess_all(material, wanted)
@@ -108,25 +113,25 @@ def test_the_tool_finds_its_way_back(every: list[Mutant], material: BenchMateria
 
 
 def test_a_bench_goes_on_where_it_ended(
-    every: list[Mutant], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    every: list[DamagedGrammar], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What was assessed is kept, and not assessed again; another mutant is."""
+    """What was assessed is kept, and not assessed again; another grammar is."""
     material = BenchMaterial(SMALL, (("program", PROGRAMS[0]),), (), ())
     first = assess_all(material, every[:2], cache=tmp_path)
-    asked: list[Mutant] = []
+    asked: list[DamagedGrammar] = []
 
     def counted(*given: Any) -> Assessment:
         asked.append(given[0])
         return assess(*given)
 
-    monkeypatch.setattr(assessment, "assess", counted)
+    monkeypatch.setattr(repair_assessment, "assess", counted)
     assert first == assess_all(material, every[:2], cache=tmp_path)
     assess_all(material, every[:3], cache=tmp_path)
     assert every[2:3] == asked
 
 
 def test_several_parts_are_ranked_by_how_deep_a_person_looks(
-    every: list[Mutant], material: BenchMaterial, monkeypatch: pytest.MonkeyPatch
+    every: list[DamagedGrammar], material: BenchMaterial, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The best of all clusters together are 1; else the deepest proposal that is needed counts.
 
@@ -138,8 +143,8 @@ def test_several_parts_are_ranked_by_how_deep_a_person_looks(
         for m in every
         if title in m.title(SMALL)
     ]
-    [mutant] = combined(chosen, SMALL, 1, seed=1)
-    assert 2 == mutant.parts
+    [damaged] = combined(chosen, SMALL, 1, seed=1)
+    assert 2 == damaged.parts
     useless = Proposal((AddAlternative("halt", "HALT HALT"),), frozenset(), frozenset(), 0, 0)
 
     def rank_with(proposals: Callable[[tuple[Proposal, ...]], tuple[Proposal, ...]]) -> int | None:
@@ -149,15 +154,15 @@ def test_several_parts_are_ranked_by_how_deep_a_person_looks(
             last = replace(last, proposals=proposals(last.proposals))
             return replace(found, ranked=(*found.ranked[:-1], last))
 
-        monkeypatch.setattr(assessment, "cluster", changed)
-        return assess(mutant, material).repair_rank
+        monkeypatch.setattr(repair_assessment, "cluster", changed)
+        return assess(damaged, material).repair_rank
 
     assert 1 == rank_with(lambda found: found)
     assert 3 == rank_with(lambda found: (useless, useless, found[0]))
     assert rank_with(lambda _: (useless,)) is None
 
 
-def test_figures_count_ranks(every: list[Mutant]) -> None:
+def test_figures_count_ranks(every: list[DamagedGrammar]) -> None:
     """A rank within one or five counts; clusters are counted for each part taken out."""
     verdicts = [
         Assessment(every[0], True, 1, 4, None, 2, 0, (3,), 1.0),
