@@ -19,6 +19,12 @@ def collect_seldom() -> None:
     gc.set_threshold(_MANY // 5, 5, 1)
 
 
+def visit_seldom() -> None:
+    """Have the objects that exist visited by full collections only, as if they had survived one."""
+    gc.freeze()
+    gc.unfreeze()
+
+
 @contextmanager
 def gc_paused(many: int = _MANY) -> Iterator[None]:
     """Disable garbage collection in the context; collect after it if it created many objects.

@@ -18,7 +18,7 @@ from krl.terminal.options import JobsOption
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
 from support.files.user_cache import user_cache
-from support.gc_pause import gc_paused
+from support.gc_pause import gc_paused, visit_seldom
 from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -121,6 +121,7 @@ def check(
     explain CODE' says what a code means.
     """
     from grammar.check.project.batch import CheckOptions
+    from grammar.check.project.project_check import MANY_OBJECTS
 
     check_files(out, write_baseline)
     if format_ is Format.JUNIT:
@@ -163,7 +164,9 @@ def check(
             for _ in changes(paths):
                 check_.run(format_, out, verbose)
         return FINE
-    found = check_.run(format_, out, verbose)
+    with gc_paused(MANY_OBJECTS):
+        found = check_.run(format_, out, verbose)
+        visit_seldom()
     return FINDINGS if found & _FAILING[fail_on] else FINE
 
 
@@ -197,12 +200,6 @@ class _Check:
 
     def run(self, format_: Format, out: Path | None, is_verbose: bool) -> set[str]:
         """Write the new findings, sum them up on stderr, and return their severities."""
-        from grammar.check.project.project_check import MANY_OBJECTS
-
-        with gc_paused(MANY_OBJECTS):  # until all is written: what a check keeps is no garbage
-            return self._run(format_, out, is_verbose)
-
-    def _run(self, format_: Format, out: Path | None, is_verbose: bool) -> set[str]:
         report = self._report()
         kept, more = self._kept(report), ""
         if self.baseline is not None:
