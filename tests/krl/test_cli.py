@@ -140,7 +140,7 @@ def test_start_is_quick() -> None:
     ("words", "unwanted"),
     [
         (["--version"], ("krl.commands.run", "krl.commands.bench", "rich")),
-        (["check", "one.src"], ("interp", "numpy", "rich", "lark", "pydantic")),
+        (["check", "one.src", "--jobs", "1"], ("interp", "numpy", "rich", "lark", "pydantic")),
         (
             ["run", "one.src", "--robot", "none"],
             ("numpy", "interp.robot.planning.planned_arm", "rich", "lark", "pydantic"),
