@@ -1,9 +1,11 @@
 """Grammars written in another style of ANTLR 4, rewritten in the style of this project.
 
 The result accepts the same texts. Actions and labels are dropped because they do not change what is
-accepted. Literals that only parser rules quote get a lexer rule. A left-recursive rule becomes one
-rule for each level of precedence. Where no rule reads EOF, a new start rule does. Keywords spelt
-with a fragment for each letter (``I F``) become literals of a grammar that ignores case.
+accepted. Literals that only parser rules quote get a lexer rule. Parser rules quote signs and name
+the tokens of words, whichever way they were written, and rows of lines have rules. A left-recursive
+rule becomes one for each level of precedence. Where no rule reads EOF, a new start rule does.
+Keywords spelt with a fragment for each letter (``I F``) become literals of a grammar that ignores
+case.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from itertools import count
 from string import ascii_lowercase, ascii_uppercase
 
 from grammar.notation.g4 import checked, unchecked
+from grammar.notation.line_style import with_ends_of_lines, with_rules_of_lines
 from grammar.notation.model import (
     Alternative,
     Element,
@@ -27,10 +30,8 @@ from grammar.notation.model import (
     characters_of,
     walk,
 )
+from grammar.notation.splices import Splice, spliced
 from grammar.notation.unsupported import without_decoration
-
-#: A replacement in the text of a rule: start, end, new text.
-_Splice = tuple[int, int, str]
 
 
 def read_foreign(text: str, *, source: str = "grammar") -> Grammar:
@@ -41,7 +42,16 @@ def read_foreign(text: str, *, source: str = "grammar") -> Grammar:
     ``text``, except for a rule that was rewritten.
     """
     text = without_decoration(text)
-    for rewritten in (_with_end, _with_keywords, _without_ends, _with_tokens, _with_levels):
+    for rewritten in (
+        _with_end,
+        _with_keywords,
+        _without_ends,
+        _with_tokens,
+        _with_quoted_signs,
+        _with_levels,
+        with_ends_of_lines,
+        with_rules_of_lines,
+    ):
         text = rewritten(unchecked(text, source))
     return checked(unchecked(text, source), source)
 
@@ -53,20 +63,20 @@ def _with_end(grammar: Grammar) -> str:
     if is_ended or first is None:
         return grammar.text
     name = next(n for k in count() if (n := f"file{k or ''}") not in grammar.by_name)
-    return _spliced(grammar, {first.name: [(0, 0, f"{name} : {first.name} EOF ; ")]})
+    return spliced(grammar, {first.name: [(0, 0, f"{name} : {first.name} EOF ; ")]})
 
 
 def _with_keywords(grammar: Grammar) -> str:
     """Return the text with words spelt by one-letter fragments replaced by literals."""
     letters = {r.name: letter for r in grammar.rules if r.is_fragment and (letter := _letter(r))}
-    changed: dict[str, list[_Splice]] = {}
+    changed: dict[str, list[Splice]] = {}
     for rule in grammar.rules:
         for alternative in rule.alternatives if rule.is_lexer and not rule.is_fragment else ():
             word = _spelt(alternative, letters)
             if word:
                 changed.setdefault(rule.name, []).append((*alternative.span, f"'{word}'"))
     if not changed or grammar.case_insensitive:
-        return _spliced(grammar, changed)
+        return spliced(grammar, changed)
     head = re.sub(
         r"(?m)((?:^|\*/)\s*grammar\s+\w+\s*;)(\s*options\s*\{)?",
         lambda found: (
@@ -76,7 +86,7 @@ def _with_keywords(grammar: Grammar) -> str:
         grammar.gaps[0],
         count=1,
     )
-    return head + _spliced(grammar, changed).removeprefix(grammar.gaps[0])
+    return head + spliced(grammar, changed).removeprefix(grammar.gaps[0])
 
 
 def _letter(rule: Rule) -> str:
@@ -105,7 +115,7 @@ def _without_ends(grammar: Grammar) -> str:
 
     The lexer takes the longest match, so such a token still ends with the file.
     """
-    return _spliced(
+    return spliced(
         grammar,
         {
             rule.name: [
@@ -142,13 +152,38 @@ def _with_tokens(grammar: Grammar) -> str:
             name = next(n for n in _names(element.text) if n not in taken)
             taken.add(name)
             known[grammar.fold(element.text)] = name
-            quoted = element.text.replace("\\", r"\\").replace("'", r"\'")
-            rules.append(f"{name} : '{quoted}' ;\n")
+            rules.append(f"{name} : {_quoted(element.text)} ;\n")
     lexer = next((n for n, rule in enumerate(grammar.rules) if rule.is_lexer), len(grammar.rules))
     pairs = zip(grammar.gaps[:lexer], grammar.rules[:lexer], strict=True)
     ahead = sum(len(gap) + len(rule.text) for gap, rule in pairs) + len(grammar.gaps[lexer])
     text = grammar.text
     return text[:ahead].rstrip() + "\n\n" + "".join(rules) + text[ahead:] if rules else text
+
+
+def _with_quoted_signs(grammar: Grammar) -> str:
+    """Return the text with signs quoted in parser rules, and words written as their tokens."""
+    texts = {
+        n: text for text, n in grammar.literal_tokens.items() if not set(text) & set(" \t\r\n")
+    }
+    names = {grammar.fold(text): name for name, text in texts.items()}
+    changed: dict[str, list[Splice]] = {}
+    for rule in grammar.parser_rules:
+        found = changed[rule.name] = []
+        for element in walk(rule):
+            match element:
+                case Reference(name=name) if name in texts and not _is_word(texts[name]):
+                    found.append((*element.span, _quoted(texts[name])))
+                case Literal(text=text) if _is_word(text) and grammar.fold(text) in names:
+                    found.append((*element.span, names[grammar.fold(text)]))
+    return spliced(grammar, changed)
+
+
+def _is_word(text: str) -> bool:
+    return re.fullmatch(r"\w+", text) is not None
+
+
+def _quoted(text: str) -> str:
+    return "'" + text.replace("\\", r"\\").replace("'", r"\'") + "'"
 
 
 def _elements(grammar: Grammar) -> Iterator[Element]:
@@ -169,12 +204,12 @@ def _names(text: str) -> Iterator[str]:
 
 def _with_levels(grammar: Grammar) -> str:
     """Return the text with left-recursive rules replaced by levels of operators."""
-    changed: dict[str, list[_Splice]] = {}
+    changed: dict[str, list[Splice]] = {}
     for rule in grammar.rules:
         is_led = any(_is(rule, a.elements[:1]) for a in rule.alternatives if len(a.elements) > 1)
         if not rule.is_lexer and is_led:
             changed[rule.name] = [(0, len(rule.text), _levels(grammar, rule))]
-    return _spliced(grammar, changed)
+    return spliced(grammar, changed)
 
 
 def _is(rule: Rule, elements: tuple[Element, ...]) -> bool:
@@ -218,14 +253,3 @@ def _levels(grammar: Grammar, rule: Rule) -> str:
 
 def _choice(name: str, alternatives: list[str]) -> str:
     return f"{name}\n    : " + "\n    | ".join(alternatives) + "\n    ;"
-
-
-def _spliced(grammar: Grammar, changed: Mapping[str, list[_Splice]]) -> str:
-    """Return the text of a grammar with parts of rules replaced."""
-    pieces = [grammar.gaps[0]]
-    for rule, gap in zip(grammar.rules, grammar.gaps[1:], strict=True):
-        text = rule.text
-        for start, end, new in sorted(changed.get(rule.name, ()), reverse=True):
-            text = text[:start] + new + text[end:]
-        pieces += (text, gap)
-    return "".join(pieces)

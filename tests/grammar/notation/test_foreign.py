@@ -28,6 +28,23 @@ def test_quoted_texts_get_tokens() -> None:
     assert [True, False] == _accepts("s : 'go' 'é'? NAME '..' NAME EOF ;", "go a..b", "a b..c")
 
 
+def test_signs_are_quoted_and_words_are_not() -> None:
+    """Whichever way they were written: brackets and words of a rule are seen in its text."""
+    grammar = read_foreign(f"grammar x;\ns : 'go' OPEN NAME? ')'* EOF ;\nOPEN : '(' ;\n{_TOKENS}")
+    assert "GO '(' NAME? ')'* EOF" in grammar.by_name["s"].text
+    assert Recognizer(grammar).accepts("go (a))")
+
+
+def test_rows_of_lines_have_rules() -> None:
+    """Their lines are alternatives of a rule, and a row stands where its rule was called."""
+    rules = "s : block ;\nblock : (line NL+)* ;\nline : 'if' NAME NL+ block 'fi' | NAME ;"
+    grammar = read_foreign(f"grammar x;\n{rules}\n{_TOKENS}")
+    assert "s : lineLine* ;" == grammar.by_name["s"].text
+    assert {"file", "s", "lineLine", "line", "eol"} == {r.name for r in grammar.parser_rules}
+    texts = ("if a\nif b\n\nfi\nc\nfi\n", "a", "if a\nb\n")
+    assert [True, False, False] == _accepts(rules, *texts)
+
+
 def test_the_end_of_the_file_is_implied() -> None:
     """A start rule without EOF, also one that calls itself, reads to the end; lines stay."""
     for rules in ("s : NAME+ ;", "s : NAME s? ;", "s : file ;\nfile : NAME+ ;"):

@@ -1,0 +1,118 @@
+"""Rows of lines in grammars of another style, written as in this project.
+
+``(x NL+)*`` becomes ``xLine*``, with rules for the line and for its end, and a rule that is nothing
+but such a row is written where it is called. The same texts are read. But now there is a rule to
+which a line or a block of lines can be added, and blocks show what their bodies are.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from itertools import count
+
+from grammar.notation.model import (
+    Alternative,
+    Element,
+    Grammar,
+    Group,
+    Reference,
+    Repeat,
+    Rule,
+    walk,
+)
+from grammar.notation.splices import Splice, spliced
+
+
+def with_ends_of_lines(grammar: Grammar) -> str:
+    """Return the text with a rule for the ``NL+`` with which lines in a row end."""
+    changed: dict[str, list[Splice]] = defaultdict(list)
+    token = next((_repeated(end) for *_, end in _rows(grammar) if _repeated(end)), "")
+    if token:
+        name, last = _fresh(grammar, "eol"), grammar.parser_rules[-1]
+        for rule in grammar.parser_rules:
+            ends = [e for e in walk(rule) if _repeated(e) == token]
+            changed[rule.name] += ((*e.span, name) for e in ends)
+        place = len(last.text)
+        changed[last.name].append((place, place, f"\n\n{name}\n    : {token}+\n    ;"))
+    return spliced(grammar, changed)
+
+
+def with_rules_of_lines(grammar: Grammar) -> str:
+    """Return the text with a rule for the lines of each row ``(x NL)*``, if there are none yet."""
+    if any(_has_lines(grammar, rule) for rule in grammar.parser_rules):
+        return grammar.text
+    changed: dict[str, list[Splice]] = defaultdict(list)
+    names: dict[str, str] = {}
+    for rule, row, line, end in _rows(grammar):
+        text = f"{line} {rule.source_of(end)}"
+        if text not in names:
+            names[text] = _fresh(grammar, f"{line}Line", names.values())
+            changed[line].append((0, 0, f"{names[text]}\n    : {text}\n    ;\n\n"))
+        changed[rule.name].append((*row.span, f"{names[text]}{row.operator}"))
+    written_out = {
+        rule.name: f"{names[text]}{row.operator}"
+        for rule, row, line, end in _rows(grammar)
+        if rule is not grammar.parser_rules[0] and _is_only(rule, row)
+        for text in [f"{line} {rule.source_of(end)}"]
+    }
+    for rule in grammar.parser_rules:
+        for element in walk(rule):
+            if isinstance(element, Repeat) and isinstance(element.item, Reference):
+                written_out.pop(
+                    element.item.name, None
+                )  # one suffix more would mean something else
+    for rule in grammar.parser_rules:
+        calls = [e for e in walk(rule) if isinstance(e, Reference) and e.name in written_out]
+        changed[rule.name] += ((*e.span, written_out[e.name]) for e in calls)
+    changed |= {name: [(0, len(grammar.by_name[name].text), "")] for name in written_out}
+    return spliced(grammar, changed)
+
+
+def _rows(grammar: Grammar) -> Iterator[tuple[Rule, Repeat, str, Element]]:
+    """Yield the rows ``(x NL)*`` of a rule ``x``: rule, row, ``x`` and the end of the line."""
+    for rule in grammar.parser_rules:
+        for element in walk(rule):
+            match element:
+                case Repeat(
+                    item=Group(alternatives=(Alternative(elements=(Reference() as line, end)),)),
+                    operator="*" | "+",
+                ):
+                    if _is_end(grammar, end) and not line.is_token:
+                        yield rule, element, line.name, end
+
+
+def _has_lines(grammar: Grammar, rule: Rule) -> bool:
+    """Return whether all alternatives of a rule end with a line."""
+    return all(len(a.elements) > 1 and _is_end(grammar, a.elements[-1]) for a in rule.alternatives)
+
+
+def _is_end(grammar: Grammar, element: Element) -> bool:
+    """Return whether an element is one token that is no word, once or more, or such a rule."""
+    match element:
+        case Reference(name=name, is_token=False):
+            elements = [e for a in grammar.by_name[name].alternatives for e in a.elements]
+            return len(elements) == 1 and _repeated(elements[0]) != ""
+        case Reference(name=name) | Repeat(item=Reference(name=name, is_token=True), operator="+"):
+            is_word = any(n == name and text.strip() for text, n in grammar.literal_tokens.items())
+            return name != "EOF" and not is_word
+    return False
+
+
+def _repeated(element: Element) -> str:
+    """Return the token that comes once or more; empty for any other element."""
+    match element:
+        case Repeat(item=Reference(name=name, is_token=True), operator="+"):
+            return name
+    return ""
+
+
+def _is_only(rule: Rule, row: Repeat) -> bool:
+    """Return whether a row is all that a rule has."""
+    return len(rule.alternatives) == 1 and rule.alternatives[0].elements == (row,)
+
+
+def _fresh(grammar: Grammar, wanted: str, taken: Iterable[str] = ()) -> str:
+    """Return a name that no rule has."""
+    every = {*grammar.by_name, *taken}
+    return next(n for k in count(1) if (n := f"{wanted}{k if k > 1 else ''}") not in every)
