@@ -33,7 +33,7 @@ def _view(record: Record) -> Json:
     last = rounds[-1] if rounds else {}
     figures = [_figure(name, nested(last, key)) for name, key in _HALVES if nested(last, key)]
     taken = [row for n, done in enumerate(rounds, 1) for row in _taken(n, done)]
-    refused = _refused(last, len(rounds))
+    refused = _refused(rounds)
     figures.append(Figure("steps taken", f"{len(taken):,}", counted(len(rounds), "round")))
     minutes = number(record, "seconds") / 60
     rules = count(record, "rules") or count(last, "rules")
@@ -118,11 +118,21 @@ def _taken(number: int, done: Record) -> list[Json]:
     ]
 
 
-def _refused(done: Record, number: int) -> list[Json]:
-    """Return the refused steps of the last round; those of earlier rounds may be accepted since."""
-    return [
-        _row(number, {**step, "id": ""}, text(step, "reason")) for step in records(done, "refused")
-    ]
+def _refused(rounds: Sequence[Record]) -> list[Json]:
+    """Return the steps refused since lines last showed one that was taken.
+
+    Those refused before may have been taken since. The rounds at the end look for different things.
+    """
+    shown_by_lines = [any(count(s, "lines") for s in records(r, "taken")) for r in rounds]
+    since = max((n for n, is_one in enumerate(shown_by_lines) if is_one), default=0)
+    found: dict[tuple[str, ...], Json] = {}
+    for place, done in enumerate(rounds[since:], since + 1):
+        for step in records(done, "refused"):
+            row = _row(place, {**step, "id": ""}, text(step, "reason"))
+            found[text(step, "title"), *row["edits"]] = row
+        for step in records(done, "taken"):
+            found.pop((text(step, "title"), *_row(place, step, "")["edits"]), None)
+    return list(found.values())
 
 
 def _row(number: int, step: Record, note: str) -> Json:
