@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 
@@ -16,7 +16,7 @@ from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms
 from recovery.proposals.blocks import BlockLines, SourceFile, find_blocks
-from recovery.tuning import BALANCED_FILES
+from recovery.tuning import BALANCED_FILES, SEVERAL
 
 
 class BlockEdits:
@@ -111,23 +111,42 @@ def blocks_of(
     prefixes: frozenset[str],
 ) -> list[BlockLines]:
     """Return the blocks of a corpus that the grammar of the recogniser lacks."""
-    lexer, corpus = recognizer.lexer, keywords.corpus
-    name = lexer.name_kind
+    vocabulary = Vocabulary(recognizer)
+    origins, least = keywords.least
+    found: list[BlockLines] = []
+    # where few lines show which words are prefixes any word may be one that begins no block
+    for is_any in (False, True):
+        leads, tokens = _led(keywords, prefixes, is_any=is_any)
+        files = [
+            SourceFile(tuple((leads[n], tokens[n]) for n in numbers), file.origins)
+            for file, numbers in zip(keywords.corpus.files, keywords.corpus.of_file, strict=True)
+        ]
+        free = {w for w in leads if w.isidentifier() and not vocabulary.is_written(w)}
+        free -= frozenset().union(*(block.words for block in found))
+        some = find_blocks(files, free, (origins, BALANCED_FILES if least > 1 else 1))
+        opened = Counter(leads[n] for numbers in keywords.corpus.of_file for n in numbers)
+        found += [block for block in some if opened[block.opener] >= SEVERAL]
+    return found
+
+
+def _led(
+    keywords: InferredKeywords, prefixes: frozenset[str], *, is_any: bool
+) -> tuple[list[str], list[tuple[Token, ...]]]:
+    """Return for each line of the corpus the word that leads it, and its tokens.
+
+    That is the word behind a prefix, or with ``is_any`` a new keyword that leads other lines.
+    """
+    lexer, lines = keywords.lexer, keywords.corpus.lines
+    name, leading = lexer.name_kind, keywords.words & {line[0] for line in lines}
     tokens = []
     leads = []
-    for line in corpus.lines:
+    for line in lines:
         meant = dict(keywords.in_line(line))
-        at = int(len(line) > 1 and line[0] in prefixes)
+        is_led = line[0] in prefixes or (is_any and leading.issuperset(line[1:2]))
+        at = int(len(line) > 1 and is_led)
         lead = line[at]
         if lead in keywords.words and lexer.kinds[lead] == name:
             meant.setdefault(at, lead)
         leads.append(lead if lexer.kinds[lead] != name or at in meant else "")
         tokens.append(tuple((lexer.kinds[word], meant.get(i)) for i, word in enumerate(line)))
-    files = [
-        SourceFile(tuple((leads[n], tokens[n]) for n in numbers), file.origins)
-        for file, numbers in zip(corpus.files, corpus.of_file, strict=True)
-    ]
-    vocabulary = Vocabulary(recognizer)
-    free = {w for w in leads if w.isidentifier() and not vocabulary.is_written(w)}
-    origins, least = keywords.least
-    return find_blocks(files, free, (origins, min(BALANCED_FILES, 1 + least)))
+    return leads, tokens

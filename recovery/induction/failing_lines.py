@@ -44,6 +44,7 @@ class FailingLines:
         failures: Sequence[Sequence[Failure]],
         keywords: InferredKeywords,
     ) -> None:
+        self._name = keywords.lexer.name_kind
         found: dict[LinePattern, Occurrences] = {}
         for place, of_file in enumerate(failures):
             for failure in of_file:
@@ -81,6 +82,20 @@ class FailingLines:
         shown = tuple(islice(seen, PLACES_SHOWN))
         return Evidence(len(files), len(origins), self.weight(lines), seen=shown)
 
+    def distinct(self, lines: Collection[int]) -> int:
+        """Return how many different texts these lines have."""
+        return len({text for n in lines for text in self.occurrences[n].texts})
+
+    def have_one_word(self, lines: Set[int]) -> bool:
+        """Return whether lines fail at a name behind another one, and it is the same in all."""
+        found: set[str] = set()
+        for number in lines:
+            form = self.patterns[number].form
+            if not form.index or {*form.kinds[form.index - 1 : form.index + 1]} != {self._name}:
+                return False
+            found.update(text[form.index] for text in self.occurrences[number].texts)
+        return len(found) == 1
+
     def is_repeated(
         self,
         lines: Set[int],
@@ -93,16 +108,16 @@ class FailingLines:
         Known forms may be extended to read lines that are ``explained``.
         """
         some = [self.occurrences[n] for n in lines]
-        # where nothing else is wrong in a file a form that is known may grow by a single line, but
-        # not by a word where a name stands
+        places = sum(len(line.seen) for line in some)
         is_new = any(isinstance(edit, AddAlternative) for edit in edits)
-        if not (is_new or self._are_misnamed(lines, recognizer)):
+        is_word = any(isinstance(edit, AddToken) for edit in edits)
+        # where nothing else is wrong in a file a form that is known may grow by a single line, but
+        # not by a word where a name stands; and two lines show a new form with a new word
+        if places >= PLACES_IN_ONE_FILE or not (is_new or self._are_misnamed(lines, recognizer)):
             known = {n for n, pattern in enumerate(self.patterns) if pattern in explained}
             if any(self._of_file[p] <= lines | known for line in some for p in line.files):
                 return True
-        if any(isinstance(edit, AddToken) for edit in edits):
-            return len({text for line in some for text in line.texts}) >= SEVERAL
-        return sum(len(line.seen) for line in some) >= PLACES_IN_ONE_FILE
+        return self.distinct(lines) >= SEVERAL if is_word else places >= PLACES_IN_ONE_FILE
 
     def _are_misnamed(self, lines: Set[int], recognizer: Recognizer) -> bool:
         """Return whether all lines parse with a name for the reserved word at which they fail."""

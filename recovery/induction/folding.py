@@ -20,6 +20,7 @@ from recovery.induction.folds_of_alternatives import (
 )
 from recovery.induction.folds_of_declarations import (
     brackets,
+    heads,
     modifiers,
     tails,
     undeclared,
@@ -44,6 +45,7 @@ FOLDS: tuple[Callable[[GrammarView], Iterator[InferredStep]], ...] = (
     tails,
     brackets,
     signs,
+    heads,
     modifiers,
     undeclared,
     variables,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from itertools import pairwise, takewhile
+from itertools import combinations, pairwise, product, takewhile
 
-from grammar.notation.edits import Insert, Replace
+from grammar.notation.edits import Edit, Insert, RemoveAlternative, Replace
 from grammar.notation.model import Element, Literal, Reference, Repeat, Rule
 from recovery.brackets import BRACKETS
 from recovery.forms.operand_rules import bracket_pairs
@@ -86,6 +86,48 @@ def modifiers(view: GrammarView) -> Iterator[InferredStep]:
                 yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
 
 
+def heads(view: GrammarView) -> Iterator[InferredStep]:
+    """Yield one form for alternatives that differ only in the words that they begin with.
+
+    Each word is missing in some of them, and each two are side by side in the same order, so any of
+    them may be missing.
+    """
+    for rule in view.grammar.parser_rules:
+        found: dict[str, list[tuple[int, set[tuple[str, ...]]]]] = defaultdict(list)
+        for number in range(1, 1 + len(rule.alternatives)):
+            line = view.line(rule.name, number)
+            ahead = list(takewhile(lambda e: _modifiers(view, e), line))
+            choices = [sorted(_modifiers(view, e)) + [""] * view.is_ending(e) for e in ahead]
+            if ahead and len(line) > len(ahead) + 1:
+                heads = {tuple(filter(None, words)) for words in product(*choices)}
+                found[view.source(rule.name, line[len(ahead) :])].append((number, heads))
+        for rest, having in found.items():
+            every = set[tuple[str, ...]]().union(*(heads for _, heads in having))
+            pairs = {pair for head in every for pair in combinations(head, 2)}
+            words = sorted(
+                {w for h in every for w in h}, key=lambda w: sum(w == b for _, b in pairs)
+            )
+            if len(words) < 2 or pairs != set(combinations(words, 2)):
+                continue
+            if any(all(word in head for head in every) for word in words):
+                continue
+            first = [
+                " ".join([word, *(f"{w}?" for w in words[n:])]) for n, word in enumerate(words, 1)
+            ]
+            text = f"({' | '.join(first)})" + "?" * (() in every) + f" {rest}"
+            (number, _), *others = having
+            edits: list[Edit] = [
+                Replace(rule.name, (number, 1), text, len(view.line(rule.name, number)))
+            ]
+            edits += [RemoveAlternative(rule.name, n) for n, _ in reversed(others)]
+            yield InferredStep(
+                f"{', '.join(words)} ahead of {rest.split()[0]} in {rule.name}",
+                tuple(edits),
+                (),
+                breadth=RULE_SYMBOLS,
+            )
+
+
 def undeclared(view: GrammarView) -> Iterator[InferredStep]:
     """Yield the prefix between a word and a type in front of types of a kind without that word."""
     for rule in view.grammar.parser_rules:
@@ -115,6 +157,12 @@ def _declares(view: GrammarView, elements: Sequence[Element]) -> bool:
     words = view.words(elements[0]) if len(elements) > 2 else frozenset()
     is_word = len(words) == 1 and view.types.isdisjoint(words)
     return is_word and view.is_name(elements[1]) and not isinstance(elements[2], Literal)
+
+
+def _modifiers(view: GrammarView, element: Element) -> frozenset[str]:
+    """Return the reserved words of which an element is a choice; they may be missing."""
+    words = view.words(element.item if isinstance(element, Repeat) else element)
+    return words if words <= view.reserved else frozenset()
 
 
 def _is_inner(view: GrammarView, rule: Rule) -> bool:

@@ -193,7 +193,11 @@ class InferredKeywords:
         """Return the words of the corpus by context, without those that may be called."""
         found: dict[_Context, dict[str, _Uses]] = defaultdict(lambda: defaultdict(_Uses))
         corpus = self.corpus
-        for line, count, origins in zip(corpus.lines, corpus.counts, corpus.origins, strict=True):
+        # at the end what is alone on several lines of one file is a word too
+        often = Counter(n for numbers in corpus.of_file if self.least[1] == 1 for n in numbers)
+        every = zip(corpus.lines, corpus.counts, corpus.origins, strict=True)
+        for number, (line, files, origins) in enumerate(every):
+            count = often[number] if len(line) == 1 and often[number] >= SEVERAL else files
             for place, word, context in self._uses(line):
                 if context == _OPEN:
                     continue

@@ -242,18 +242,14 @@ class LineEdits:
         """Return edits of an alternative with the same first words, to read these lines, too."""
         words = head.split()
         for rule, place, first in self.hosts.all_lines:
-            inside = [e for e in first if not (isinstance(e, Repeat) and e.operator == "?")]
+            inside = [e for e in first if not is_optional(e)]
             leads = [self.hosts.words_of(e) for e in inside[:2]]
+            yield from self._one_word_apart(rule, place, first, members)
             if not inside or words[0] not in leads[0]:
                 continue
             if len(words) > 1 and (len(leads) < 2 or words[1] not in leads[1]):
                 continue
             title = f"{head} … in {rule}"
-            # a word that may be missing at the head of other lines leaves the rest as it is
-            led = {shape[0].text for shape in shapes} & self._prefixes
-            for word in sorted(led - self.hosts.words_of(first[0])):
-                edits = (*self.forms.reserving(word), Insert(rule, place, f"{word}?"))
-                yield InferredStep(title, edits, tuple(members))
             for at, tails in self._tails(rule, place, len(first), members).items():
                 # what a comma begins would be taken for a list; some only do so go on with one
                 begun = {tail[0].text for tail in tails}
@@ -269,6 +265,37 @@ class LineEdits:
             for text in self.forms.of(alike, old):
                 edits = (*self.forms.reserving(text), Replace(rule, place, text, len(first)))
                 yield InferredStep(title, edits, tuple(members))
+
+    def _one_word_apart(
+        self, rule: str, place: Address, first: Sequence[Element], members: Sequence[int]
+    ) -> Iterator[InferredStep]:
+        """Edits for lines with one word more or less at their head than a form of the grammar.
+
+        ``first`` are the elements of the form.
+        """
+        lead, behind = (self.hosts.words_of(e) for e in (*first, *first)[:2])
+        inner = next((self.hosts.words_of(e) for e in first if not is_optional(e)), lead)
+        shorter: list[int] = []
+        longer: dict[str, list[int]] = defaultdict(list)
+        for number in members:
+            word, *others = (s.text for s in self.symbols[number][:2])
+            if word in behind - lead and lead and not is_optional(first[0]):
+                shorter.append(number)
+            if WORD.fullmatch(word) and word not in lead and inner.intersection(others):
+                longer[word].append(number)
+        if shorter:
+            source = self.at.grammar.by_name[rule].source_of
+            both, one = source(first[0]), source(first[1]).removesuffix("?")
+            # not both of them may be missing
+            either = Replace(rule, place, f"({both} {one}? | {one})", 2)
+            edit = either if is_optional(first[1]) else MakeOptional(rule, place)
+            title = f"without {' or '.join(sorted(lead))} in {rule}"
+            yield InferredStep(title, (edit,), tuple(shorter), is_known=True)
+        for word, numbers in longer.items():
+            new = self.forms.reserving(word)
+            edits = (*new, Insert(rule, place, f"{word}?"))
+            title = f"{word} … in {rule}"
+            yield InferredStep(title, edits, tuple(numbers), is_known=not new)
 
     def _one_choice(
         self, rule: str, first: Sequence[Element], shapes: dict[tuple[Symbol, ...], list[int]]
@@ -309,6 +336,11 @@ class LineEdits:
         sites = recognizer.sites(self.at.state(number))
         within = (site for site in sites if recognizer.network.rule[site[0]] == rule)
         return {place for site in within for place in places_of(recognizer, site)}
+
+
+def is_optional(element: Element) -> bool:
+    """Return whether an element may be missing."""
+    return isinstance(element, Repeat) and element.operator == "?"
 
 
 def go_on_alike(some: Set[tuple[str, ...]], others: Set[tuple[str, ...]]) -> bool:

@@ -23,10 +23,10 @@ def softened(edits: Iterable[Edit], soft: Collection[str], names: str | None) ->
     return (*tokens, *more, *(e for e in edits if not isinstance(e, AddToken)))
 
 
-def names_kept(step: AcceptedStep, used: Collection[str], names: str | None) -> AcceptedStep:
-    """Return the step with the words that it reserves, and that lines use, added to the names."""
+def names_kept(step: AcceptedStep, used: Collection[str], rules: Iterable[str]) -> AcceptedStep:
+    """Return the step with the words that it reserves, and that lines use, added to some rules."""
     words = [e.name for e in step.edits if isinstance(e, AddToken) and e.name in used]
-    more = tuple(AddAlternative(names, word) for word in words if names)
+    more = [AddAlternative(rule, word) for rule in rules for word in words]
     return replace(step, edits=(*step.edits, *(e for e in more if e not in step.edits)))
 
 

@@ -70,6 +70,7 @@ from recovery.tuning import (
     LEAST_FILES_ALONE,
     OPERAND_FILES,
     PLACES_SHOWN,
+    SEVERAL,
     SEVERAL_FILES,
     SEVERAL_ORIGINS,
     SYMBOL_FACTOR,
@@ -230,7 +231,8 @@ class Induction:
         explained |= self._explained  # of the round before, under the same grammar
         self._explained = explained if inner else set()
         taken, refused = self._chosen(scored, table, review, least, explained)
-        taken, lost = self.shown.kept(self.grammar, taken, self._names)
+        types = list(at.rules.type_rules)
+        taken, lost = self.shown.kept(self.grammar, taken, self._names, types)
         if taken and not self.shown.gains(self.grammar, taken):  # two forms may undo each other
             lost += [
                 RefusedStep(s.title, s.edits, 0.0, "mends nothing in the files") for s in taken
@@ -302,19 +304,28 @@ class Induction:
             is_new = any(isinstance(e, AddToken) for e in found.edits)
             is_inner = not changed_rules(found.edits).isdisjoint(operands)
             is_wide = evidence.origins == 1 and is_inner and not is_new
-            if evidence.origins < least[0] or evidence.files < (
-                OPERAND_FILES if is_wide else least[1]
-            ):
+            # a slip in operands spoils all lines: they need more files, at the end different lines
+            is_rare = evidence.files < (OPERAND_FILES if is_wide else LEAST_FILES_ALONE)
+            is_odd = table.distinct(lines) < SEVERAL
+            if evidence.origins < least[0] or (is_rare and least[1] > 1):
                 reason = "only one origin shows it"
-            elif evidence.files < LEAST_FILES_ALONE and not table.is_repeated(
-                lines, edits, review.recognizer, explained
+            elif (
+                is_rare
+                and not found.is_known
+                and (
+                    (is_wide and is_odd)
+                    or not table.is_repeated(lines, edits, review.recognizer, explained)
+                )
             ):
                 reason = "too few lines of one file show it"
+            elif least[1] > 1 and not is_new and table.have_one_word(lines):
+                reason = "a word that all lines have behind a name may be a keyword"
             elif fixed & changed:
                 continue  # its place has changed in this round: the next one will try it again
             else:
                 worth = 0.0 if found.is_strict else gain
-                most = evidence.lines if evidence.files < LEAST_FILES_ALONE else math.inf
+                # a slip hardly comes in several different lines
+                most = evidence.lines if is_rare and (is_wide or is_odd) else math.inf
                 reason = review.objection(grammar, edits, found.edits, worth, most)
             if reason:
                 refused.append(RefusedStep(found.title, found.edits, gain, reason))

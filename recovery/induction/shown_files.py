@@ -38,12 +38,17 @@ class ShownFiles:
         return known
 
     def kept(
-        self, grammar: Grammar, taken: Sequence[AcceptedStep], names: str | None
+        self,
+        grammar: Grammar,
+        taken: Sequence[AcceptedStep],
+        names: str | None,
+        types: Sequence[str] = (),
     ) -> tuple[list[AcceptedStep], list[RefusedStep]]:
         """Return the steps without those under which a file fails earlier than before, and these.
 
-        A word of a step that lines use as a name is added to the rule of ``names`` first, if more
-        files show the step than have these lines.
+        A word of a step that lines use as a name is added to the rules of ``types`` first, which is
+        enough if all these lines have it there; then to the rule of ``names``, if more files show
+        the step than have these lines.
         """
         before = self.failures(grammar)[1]
         after = self.failures(apply(grammar, joined(taken)))[1]
@@ -58,7 +63,12 @@ class ShownFiles:
         lost: list[RefusedStep] = []
         for step in taken:
             version, reason = step, ""
-            for _ in range(2):
+            used: set[str] = set()
+            named = [names] if names else []
+            for rules, may_lose in (([], False), (types, False), ([], True), (named, True)):
+                version = names_kept(step, used, rules)
+                if reason and version == step and not may_lose:
+                    continue
                 try:
                     wider = apply(grammar, joined([*kept, version]))
                 except GrammarError as error:
@@ -70,15 +80,14 @@ class ShownFiles:
                 finder = FailureFinder(Recognizer(wider))
                 read = {p: finder.find(self.files[p].text) for p in worse}
                 lost_in = [place for place, found in read.items() if _first(found) < worse[place]]
-                if not lost_in or self._is_outvoted(lost_in, step):
+                if not lost_in or (may_lose and self._is_outvoted(lost_in, step)):
                     reason = ""
                     worse |= {place: _first(read[place]) for place in lost_in}
                     break
                 reason = "loses lines that can be read"
-                if len(lost_in) >= step.evidence.files:
+                if may_lose and len(lost_in) >= step.evidence.files:
                     break
                 used = {w.upper() for p in lost_in for w in read[p][0].lexemes}
-                version = names_kept(step, used, names)
             if reason:
                 lost.append(RefusedStep(step.title, step.edits, 0.0, reason))
             else:

@@ -15,8 +15,9 @@ class InferredStep:
     """Edits, their reason, and the lines from which they were inferred.
 
     Edits that are ``is_strict`` read so much that they must not accept any program that must be
-    rejected. ``breadth`` is how much more they read than others for the same lines, in symbols of a
-    rule.
+    rejected. If edits are ``is_known`` the rest of a line is a form that the grammar has, so one
+    line shows enough. ``breadth`` is how much more they read than others for the same lines, in
+    symbols of a rule.
     """
 
     title: str
@@ -24,6 +25,7 @@ class InferredStep:
     lines: tuple[int, ...]
     is_strict: bool = False
     is_block: bool = False
+    is_known: bool = False
     breadth: int = 0
 
 

@@ -186,8 +186,10 @@ def test_the_last_line_of_a_block_is_no_line_of_its_own(toy: Grammar) -> None:
 @pytest.mark.parametrize(
     ("word", "count", "wrong", "accepted"),
     [
-        ("GLIDE", 2, "", False),
-        ("GLIDE", 3, "", True),
+        ("GLIDE", 1, "", False),
+        ("GLIDE", 2, "", True),
+        ("GLIDE", 2, "= =\n", False),
+        ("GLIDE", 3, "= =\n", True),
         ("HALT", 1, "", True),
         ("HALT", 1, "= =\n", False),
         ("HALT", 2, "= =\n", True),
@@ -198,7 +200,7 @@ def test_one_file_shows_what_it_has_often(
 ) -> None:
     """Three different lines of one file are trusted, where the word is known two places are.
 
-    A single line with a known word is where nothing else is wrong in the file.
+    Where nothing else is wrong in the file two lines are, and with a known word a single one.
     """
     more = "".join(f"{word} {name} {n}\n" for n, name in enumerate("ABC"[:count]))
     files = (
@@ -365,6 +367,52 @@ def test_each_file_with_a_literal_has_a_line(toy: Grammar) -> None:
     files = tuple(CorpusFile(f"{o}/a.toy", t, frozenset({o})) for o, t in texts.items())
     (step,) = (c for c in _grown(toy, files).constructs if c.title == "15E3 is one literal")
     assert (2, 2, 2) == (step.evidence.files, step.evidence.origins, step.evidence.lines)
+
+
+@pytest.mark.parametrize("line", ["WIDE DARK OPEN A B 1", "OPEN A B 1", "DARK SHUT A", "HALT A"])
+def test_one_line_with_one_word_more_or_less(toy: Grammar, line: str) -> None:
+    """It shows enough, whatever else is wrong in its file: the form and the word are known."""
+    more = "DARK OPEN NAME NAME NUMBER\n    | SHUT NAME\n    | WIDE HALT? NAME"
+    start = _with(
+        toy,
+        "HALT : 'HALT' ;",
+        "".join(f"{w} : '{w}' ;\n" for w in ("HALT", "DARK", "OPEN", "SHUT", "WIDE")),
+        "    | halt\n",
+        f"    | halt\n    | {more}\n",
+    )
+    files = (
+        CorpusFile("a", f"{line}\n= =\n", frozenset("a")),
+        CorpusFile("b", "HALT\n", frozenset("b")),
+    )
+    recognizer = Recognizer(_grown(start, files).grammar)
+    texts = (line, f"{line} {line}", "A")
+    assert [True, False, False] == [recognizer.accepts(f"{text}\n") for text in texts]
+
+
+def test_a_name_behind_a_name_may_be_a_word(toy: Grammar) -> None:
+    """What two origins have at the same place is one if it is always the same."""
+    start = _with(
+        toy,
+        "HALT : 'HALT' ;",
+        "HALT : 'HALT' ;\nSHUT : 'SHUT' ;",
+        "    | halt\n",
+        "    | halt\n    | SHUT NAME\n",
+    )
+    files = tuple(CorpusFile(o, f"SHUT {o} FAST\nSHUT {o}\n", frozenset({o})) for o in "AB")
+    assert "SHUT NAME FAST?" in _grown(start, files).grammar.text
+
+
+def test_a_block_of_one_file(toy: Grammar) -> None:
+    """Several in balance are no slip; a word ahead of some of them is part of their first line."""
+    block = "AGAIN {}\nA := 1\nDONE\n"
+    text = "".join("WIDE " * (n == "B") + block.format(n) for n in "ABC")
+    files = (
+        CorpusFile("a", text, frozenset("a")),
+        CorpusFile("b", "HALT\n", frozenset("b")),
+    )
+    recognizer = Recognizer(_grown(toy, files).grammar)
+    texts = (block.format("D"), f"WIDE {block.format('D')}", "AGAIN D\nA := 1\n")
+    assert [True, True, False] == list(map(recognizer.accepts, texts))
 
 
 def test_a_reserved_word_is_a_type(toy: Grammar) -> None:

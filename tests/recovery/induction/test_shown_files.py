@@ -3,6 +3,7 @@
 import pytest
 
 from grammar.notation.edits import AddAlternative, AddRule, AddToken, Replace
+from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import CorpusLines
@@ -34,6 +35,19 @@ def test_one_file_that_uses_a_word_as_a_name(toy: Grammar, form: str, kept: int)
     step = AcceptedStep("go", edits, Evidence(3, 1, 3))
     taken, _ = ShownFiles((*files, named)).kept(toy, [step], None)
     assert kept == len(taken)
+
+
+def test_a_word_that_lines_use_as_a_type(toy: Grammar) -> None:
+    """It becomes one where types are listed, even if more files have such lines than the step."""
+    text = toy.text.replace("    | halt\n", "    | halt\n    | HALT kind NAME\n")
+    start = read(text.replace("halt\n    : HALT", "kind : NAME ;\n\nhalt\n    : HALT"))
+    files = [CorpusFile(f"a/{n}", f"HALT WIDE {n}\n", frozenset("a")) for n in "ABC"]
+    shown = CorpusFile("b", "WIDE A 1\n", frozenset("b"))
+    edits = (AddToken("WIDE"), AddAlternative("simpleStatement", "WIDE NAME NUMBER"))
+    step = AcceptedStep("wide", edits, Evidence(1, 1, 1))
+    for types, found in (((), []), (["kind"], [AddAlternative("kind", "WIDE")])):
+        taken, _ = ShownFiles((*files, shown)).kept(start, [step], None, types)
+        assert found == [e for s in taken for e in s.edits if e not in edits]
 
 
 def test_a_stray_sign_moves_no_word(toy: Grammar) -> None:
