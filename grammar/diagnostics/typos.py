@@ -123,13 +123,15 @@ def _is_slip(
         if series is Series.NONE:
             return True
         letter = longer[start]
-        if (
+        is_doubled = (
             letter.isalpha()
             and letter == shorter[start - 1 : start]
             and (longer is wrong or start > 1)
             and {letter} != set(_word(longer, start))
-        ):
-            return True  # a letter was doubled, or one of two equal letters lost
+        )
+        # what ends with the mark before a number is no name of its own
+        if is_doubled or (longer is right and letter.isdigit() and shorter[start - 1 :] == "_"):
+            return True
         is_plural = longer is wrong and letter == "S" and start == len(shorter)
         if has_plurals and is_plural and name[0] != "$":
             return False  # singular and plural
@@ -140,7 +142,7 @@ def _is_slip(
     if wrong[start + 1 :] == right[start + 1 :]:
         if series is Series.NONE or {wrong[start], right[start]} in _ALIKE:
             return True
-        if not has_slipped and _is_prefix(misspelt, name, start):
+        if not has_slipped and _is_prefix(misspelt, name, start, series):
             return False
         if series is Series.DIGITS:
             return not (wrong[start].isdigit() and right[start].isdigit())
@@ -155,12 +157,18 @@ def _is_capitalised(name: str) -> bool:
     return name[:1].isupper() and name[1:2].islower()
 
 
-def _is_prefix(misspelt: str, name: str, index: int) -> bool:
-    """Return whether a letter of a name is a prefix that tells its kind: xHome, I_START."""
+def _is_prefix(misspelt: str, name: str, index: int, series: Series) -> bool:
+    """Return whether a letter of a name is a prefix that tells its kind: xHome, I_START.
+
+    The first letter of a long word in capitals is none if all names of its series are known.
+    """
     if name[0] == "$" and index == 0:
         return misspelt[1:] != name[1:] and misspelt[0].islower() and misspelt[1:2].isupper()
     if index == 0:
-        return not _is_capitalised(name) or {misspelt[0].upper(), name[0]} <= _PREFIXES
+        is_word = _is_capitalised(name) or (
+            series is Series.DIGITS and len(_word(name, 0)) > _SHORTEST_TO_END and name.isupper()
+        )
+        return not is_word or {misspelt[0].upper(), name[0]} <= _PREFIXES
     return name[index - 1] == "_" and name[index + 1 : index + 2] in ("", "_")
 
 

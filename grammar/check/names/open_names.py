@@ -34,8 +34,12 @@ def _components(context: Context) -> Iterator[UnresolvedName]:
     unknown: dict[str, list[ast.Name]] = {}
     for name in context.resolution.unknown_members:
         unknown.setdefault(name.key, []).append(name)
-    for names in unknown.values():
-        yield _component(context, names, ())
+    # a component is often called like the variable that it is assigned to or compared with
+    others = dict.fromkeys(name.text for name in context.resolution.answers if unknown)
+    known, typos = {name.upper() for name in others}, Typos(others)
+    for key, names in unknown.items():
+        near = typos.meant(names[0].text) if key not in known and f"{key}S" not in known else ()
+        yield _component(context, names, near)
     for (space, _), uses in context.open_uses.items():
         names = [use.name for use in uses if isinstance(use.answer, Undetermined)]
         if space is None and names:

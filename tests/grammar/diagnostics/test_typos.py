@@ -78,6 +78,23 @@ def test_only_digits_number_what_is_wholly_known(wrong: str) -> None:
     assert () == known.meant("$LOAD_A3")
 
 
+@pytest.mark.parametrize(
+    ("wrong", "right"), [("MNITMOV", "INITMOV"), ("XHOMEPOS", "LHOMEPOS"), ("O_START", "I_START")]
+)
+def test_the_first_letter_of_a_long_word_may_be_a_slip(wrong: str, right: str) -> None:
+    """It is one where all of a series is known, unless it is a prefix of points or of signals."""
+    assert () == Typos([right]).meant(wrong)
+    expected = (right,) if right == "INITMOV" else ()
+    assert expected == Typos([right], series=Series.DIGITS).meant(wrong)
+
+
+def test_a_name_lacks_its_number() -> None:
+    """What ends with the mark before a number is no name of its own."""
+    numbered = Typos(["Pick_1", "Pick_2"], series=Series.DIGITS)
+    assert ("Pick_1", "Pick_2") == numbered.meant("Pick_")
+    assert () == numbered.meant("Pick")
+
+
 @given(WORDS, st.data())
 def test_every_dropped_letter_behind_the_first_is_found(word: str, data: st.DataObject) -> None:
     """Whichever letter of a word is left out, the word is found again."""

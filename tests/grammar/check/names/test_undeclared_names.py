@@ -448,6 +448,16 @@ def test_a_slip_in_a_component_is_reported_where_it_is_declared(agrees: Agrees) 
     )
 
 
+def test_a_component_is_called_like_a_variable_of_the_file(agrees: Agrees) -> None:
+    """A component of an unknown structure is a slip of what it is assigned to; a plural is none."""
+    cell = """DEF CELL()
+  INT LAYERS, PALLET
+  LAYERS = RECIPE.LYAERS ;> KRL701- KSS2125?
+  PALLET = RECIPE.PALLETS + RECIPE.LAYER + LAYERS + PALLET
+END"""
+    agrees({"cell.src": cell}, is_complete=None, ignored=("KRL702",))
+
+
 def test_a_slip_in_a_constant_whose_enumeration_is_missing(agrees: Agrees) -> None:
     """It is one slip away from one that is used more often, or declared, or of the controller."""
     cell = """DEF CELL()
