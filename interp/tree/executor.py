@@ -103,7 +103,7 @@ class TreeExecutor:
         """Run until the controller is needed; see `interp.port.executor.Executor`."""
         if self._resumed_at_end is not None:
             if self._run.returns is not None:
-                self._run.returns.leave(self._at(), self._stack[-1].frame.name)
+                self._run.returns.leave(self._at(), self._top.frame.name)
             self._final, self._resumed_at_end = self._resumed_at_end, None
         if self._final is not None:
             return self._final
@@ -184,7 +184,7 @@ class TreeExecutor:
 
         A program that had already ended then ends again.
         """
-        while self._run.depth > depth or self._stack[-1].interrupted is not None:
+        while self._run.depth > depth or self._top.interrupted is not None:
             active = self._stack.pop()
             self._popped(active)
             below = active.interrupted
@@ -230,7 +230,7 @@ class TreeExecutor:
 
     def select(self, line: int) -> None:
         """Continue at a line of the running routine; see `interp.port.inspection`."""
-        frame = self._stack[-1].frame
+        frame = self._top.frame
         routine = routine_at(self._run.program, frame.unit.module.path, frame.name)
         way = () if routine is None else way_to(routine, line)
         if not way:
@@ -240,10 +240,14 @@ class TreeExecutor:
 
     # ----------------------------------------------------------------------- the stack
 
+    @property
+    def _top(self) -> _Active:
+        return self._stack[-1]
+
     def _advanced(self, reply: Any) -> Request:
         """Run the routine on top of the stack until it makes a request or the stack has ended."""
         while True:
-            active = self._stack[-1]
+            active = self._top
             try:
                 asked = _resume(active.steps, reply)
             except StopIteration as done:
@@ -321,7 +325,7 @@ class TreeExecutor:
         return end
 
     def _at(self) -> At:
-        return self._run.at(self._stack[-1].frame)
+        return self._run.at(self._top.frame)
 
     def _reply_to_condition(self, asked: Request | Call, read: Reader, stack: list[_Active]) -> Any:
         """Return the reply to a request, or start the call, that a condition makes."""

@@ -32,8 +32,6 @@ from interp.values.values import (
 )
 from support.lazy_dataclass import dataclass
 
-_READ_VARIABLES: Final = 6
-_WRITTEN_VALUES: Final = 4
 #: Variables that contain the handle of a channel that is open from the start.
 COMMANDS: Final = ("$CMD", "$FCT_CALL")
 
@@ -74,7 +72,8 @@ class Channels:
 
     def open(self, arguments: Arguments) -> Changes:
         """COPEN(:NAME, handle): open a channel."""
-        return {1: self.opened(text_of(known(arguments[0])).upper().lstrip(":"))}
+        channel, _ = arguments
+        return {1: self.opened(text_of(known(channel)).upper().lstrip(":"))}
 
     def opened(self, name: str) -> int:
         """Open a channel, and return its handle."""
@@ -84,19 +83,22 @@ class Channels:
 
     def close(self, arguments: Arguments) -> Changes:
         """CCLOSE(handle, state): close a channel; unread data is lost."""
-        name = self._name(arguments[0])
+        handle, _ = arguments
+        name = self._name(handle)
         self._handles = {handle: one for handle, one in self._handles.items() if one != name}
         self._data.pop(name, None)
         return {1: state_value("CMD_OK")}
 
     def write(self, arguments: Arguments) -> Changes:
         """CWRITE: send formatted values; a format without values is sent as it is."""
-        if len(arguments) < _WRITTEN_VALUES:
-            raise fault("argument")
-        name = self._name(arguments[0])
+        match arguments:
+            case (handle, _, _, pattern, *more):
+                name = self._name(handle)
+            case _:
+                raise fault("argument")
         target = empty(Array(CHAR, (LONGEST,)))
         assert isinstance(target, ArrayValue)
-        pattern, values = known(arguments[3]), [known(one) for one in arguments[4:]]
+        pattern, values = known(pattern), [known(one) for one in more]
         if not values:
             text = text_of(pattern)
             state: Value = state_value("CMD_OK", length=len(text))
@@ -110,12 +112,13 @@ class Channels:
 
     def read(self, arguments: Arguments, since: int) -> Changes | Waiting:
         """CREAD, requested at the time ``since``; return `Waiting` if there is no data yet."""
-        if len(arguments) < _READ_VARIABLES:
-            raise fault("argument")
-        name = self._name(arguments[0])
-        mode = arguments[2]
+        match arguments:
+            case (handle, _, mode, limit, offset, pattern, *variables):
+                name = self._name(handle)
+            case _:
+                raise fault("argument")
         if not self._data[name]:
-            timeout = converted(known(arguments[3]), REAL)
+            timeout = converted(known(limit), REAL)
             assert isinstance(timeout, float), "converted"
             until = since + microseconds(timeout) if timeout > 0 else None
             is_over = until is not None and self.clock.now >= until
@@ -127,7 +130,7 @@ class Channels:
         source = empty(Array(CHAR, (max(1, len(text)),)))
         assert isinstance(source, ArrayValue)
         set_text(source, text)
-        _, changes = sread(source, None, known(arguments[4]), known(arguments[5]), *arguments[6:])
+        _, changes = sread(source, None, known(offset), known(pattern), *variables)
         return {place if place == 1 else place + 2: value for place, value in changes.items()}
 
     def _name(self, handle: Value | None) -> str:

@@ -7,9 +7,11 @@ routines stop the advance run is data (`grammar.semantics.predefined`) [ADV-04, 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
+from grammar.semantics.assignability import assignable
 from grammar.semantics.predefined import PredefinedFunction, System
 from grammar.semantics.types import UNKNOWN
 from interp.controller.inputs.channels import Channels, Waiting
@@ -26,7 +28,7 @@ from interp.controller.motion.positions import (
 from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Answer, Blocked, Task
-from interp.port.requests import Invoke, Path, Value
+from interp.port.requests import Invoke, Value
 from interp.robot.arm import Target
 from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
@@ -35,13 +37,13 @@ from interp.values.poses import Pose
 from interp.values.predefined_values import empty_structure
 from interp.values.texts import Outcome
 from interp.values.values import (
-    EnumValue,
     StructureValue,
     copied,
     index,
     known,
     single,
     text_of,
+    type_of,
     zero,
 )
 
@@ -83,9 +85,10 @@ class PredefinedRoutines:
         entry = self._functions.get(request.name) or self._newest[request.name]
         if rule is None:
             return self._unsupported(task, request, entry)
+        given = _checked(entry, request)
         if entry.stops or self._stops_advance(request):
-            return self._advance.when_reached(task, request, lambda: rule(self, task, request))
-        return rule(self, task, request)
+            return self._advance.when_reached(task, request, lambda: rule(self, task, given))
+        return rule(self, task, given)
 
     def _unsupported(self, task: Task, request: Invoke, entry: PredefinedFunction) -> Outcome:
         """Raise a fault for a routine that is not simulated; a tolerant profile returns zero."""
@@ -102,24 +105,17 @@ class PredefinedRoutines:
     def _stops_advance(request: Invoke) -> bool:
         """Return whether the options of a message say that it stops the advance run."""
         option: Any = request.arguments[-1] if request.name.startswith("SET_KRL") else None
-        return (
-            isinstance(option, StructureValue)
-            and option.type.member("VL_STOP") is not None
-            and option.get("VL_STOP") is True
-        )
+        return isinstance(option, StructureValue) and option.get("VL_STOP") is True
 
     # ------------------------------------------------------------------------ outputs, channels
 
     def _pulse(self, _task: Task, request: Invoke) -> Outcome:  # [IOT-07, IOT-08]
-        _, level, time = (*request.arguments, None, None, None)[:3]
-        path: Path = request.paths[0] or () if request.paths else ()
-        if len(path) != 2 or path[0] != "$OUT" or not isinstance(path[1], int):
-            raise fault("argument")
-        if not isinstance(level, bool):
-            raise fault("argument")
-        seconds: Any = known(time)
-        self._state.signals.pulse(path[1], level, float(seconds))
-        return None, {}
+        level, seconds = (cast("Any", known(one)) for one in request.arguments[1:])
+        match request.paths:
+            case (("$OUT", int() as number), *_):
+                self._state.signals.pulse(number, level, float(seconds))
+                return None, {}
+        raise fault("argument")
 
     def _open(self, _task: Task, request: Invoke) -> Outcome:
         return None, self._channels.open(request.arguments)
@@ -153,19 +149,16 @@ class PredefinedRoutines:
     # ------------------------------------------------------------------------------- messages
 
     def _message(self, task: Task, request: Invoke) -> Outcome:
-        kind, message, parameters, *_ = (*request.arguments, None, None)
-        word = kind.name.upper() if isinstance(kind, EnumValue) else "NOTIFY"
-        return self._show(task, request, word, message, parameters)
+        kind, message, parameters, _ = request.arguments
+        return self._show(task, request, _name_of(kind), known(message), parameters)
 
     def _dialogue(self, task: Task, request: Invoke) -> Outcome:
-        message, parameters, *_ = (*request.arguments, None)
-        return self._show(task, request, "DIALOGUE", message, parameters)
+        message, parameters, *_ = request.arguments
+        return self._show(task, request, "DIALOGUE", known(message), parameters)
 
     def _show(
         self, task: Task, request: Invoke, kind: str, message: Any, parameters: Any
     ) -> Outcome:
-        if not isinstance(message, StructureValue):
-            raise fault("argument")
         number: Any = message.get("NR") or 0
         given: Any = message.get("MSG_TXT")
         text = _with_parameters(text_of(given), parameters)
@@ -206,20 +199,17 @@ class PredefinedRoutines:
 
     def _clear_error(self, _task: Task, request: Invoke) -> Outcome:
         """ERR_CLEAR: set the number of the error to 0 [TYP-13]."""
-        error, *_ = request.arguments
-        if not isinstance(error, StructureValue):
-            raise fault("argument")
-        cleared = copied(error)
+        (error,) = request.arguments
+        cleared = copied(known(error))
         cleared.set("NUMBER", 0)
         return None, {0: cleared}
 
     def _raise_error(self, _task: Task, request: Invoke) -> Outcome:
         """ERR_RAISE: raise the fault that the error describes, none for number 0 (unconfirmed)."""
-        error, *_ = request.arguments
-        value = error.get("NUMBER") if isinstance(error, StructureValue) else None
-        if value == 0:
+        (error,) = request.arguments
+        number: Any = known(cast("Any", known(error)).get("NUMBER"))
+        if number == 0:
             return None, {}
-        number: Any = known(value)
         try:
             raise message_fault(number)
         except KeyError:
@@ -235,10 +225,9 @@ class PredefinedRoutines:
         [SUB-06] (which number is which is unconfirmed). The arm stays on its path in both cases.
         """
         self._state.trace.record(task.name, "brake", request.at, mode="ROB_STOP")
-        kind, *_ = request.arguments
+        (kind,) = request.arguments
         if task.name == "submit":
-            is_ramp = isinstance(kind, EnumValue) and kind.name.upper() == "RAMP_DOWN"
-            number = 81 if is_ramp else 82
+            number = 81 if _name_of(kind) == "RAMP_DOWN" else 82
             self._state.messages.post_number(request.at, number, "state", task.name)
         self._arm.hold()
         return True, {}
@@ -251,7 +240,7 @@ class PredefinedRoutines:
         """FORWARD: return the pose of axes, in base and tool of the advance run [FCT-03]."""
         from interp.robot.kinematics.solution_choice import turn_of
 
-        axes_given, *_ = request.arguments
+        axes_given, _ = request.arguments
         target = target_of(known(axes_given))
         axes = _components(target, AXIS_NAMES)
         kinematics, placement = self._kinematics, self._frames.advance_run()
@@ -289,9 +278,10 @@ class PredefinedRoutines:
 
         That a base is coupled by having this value, and by nothing else, is unconfirmed.
         """
-        root, offset = (pose_of(known(request.arguments[place])) for place in (0, 2))
+        base, which, foot = map(known, request.arguments)
+        root, offset = pose_of(base), pose_of(foot)
         machine = self._state.machine
-        system = machine.tables.get(word_of(request.arguments[1]))
+        system = machine.tables.get(word_of(which))
         if root is None or offset is None:
             raise fault("uninitialised")
         if system is None:
@@ -320,10 +310,8 @@ class PredefinedRoutines:
 
     def _size(self, _task: Task, request: Invoke) -> Outcome:
         """GETVARSIZE(#NAME): return the number of elements of an array of the controller."""
-        which, *_ = request.arguments
-        if not isinstance(which, EnumValue):
-            raise fault("argument")
-        name = which.name.upper()
+        (which,) = request.arguments
+        name = _name_of(which)
         if name in _SIZES:
             return self._state.profile.sizes[_SIZES[name]], {}
         return self._state.variables.size(f"${name}"), {}
@@ -342,6 +330,27 @@ class PredefinedRoutines:
 
     def _no(self, _task: Task, _request: Invoke) -> Outcome:
         return False, {}
+
+
+def _checked(entry: PredefinedFunction, request: Invoke) -> Invoke:
+    """Return a request with ``None`` for each argument that is left out at the end.
+
+    Faults ``argument`` if the routine cannot have these arguments [ARI-04, MSG-23].
+    """
+    left_out = len(entry.parameters) - len(request.arguments)
+    arguments = *request.arguments, *[None] * left_out
+    fits = (
+        one is None or parameter.type == UNKNOWN or assignable(parameter.type, type_of(one)).is_fine
+        for parameter, one in zip(entry.parameters, arguments, strict=False)
+    )
+    if not (entry.takes(len(arguments)) and all(fits)):
+        raise fault("argument")
+    return replace(request, arguments=arguments)
+
+
+def _name_of(constant: Value | None) -> str:
+    """Return the name of an enumeration constant in upper case."""
+    return word_of(known(constant)).lstrip("#")
 
 
 def _int(argument: Value | None) -> int:
