@@ -1,9 +1,8 @@
 """Laws about the duration of motions from rest to rest, at an override of 100.
 
 A PTP takes exactly the time that its axes need, in closed form. A LIN or CIRC is no faster than its
-speed and acceleration allow, and no slower if all axes are far from their limits. Parts of a
-TIME_BLOCK take their shares, as docs/motion.md says of our simulator. Sequences of motions are
-compared with other sequences of the same run.
+speed and acceleration allow, and no slower if all axes are far from their limits. Sequences of
+motions are compared with other sequences of the same run.
 """
 
 from __future__ import annotations
@@ -25,8 +24,6 @@ from conformance.evaluation.motions import (
 from conformance.evaluation.path_geometry import arc_length, change_rates
 from conformance.evaluation.place_laws import axes_of
 from conformance.evaluation.run_laws import Violation
-from conformance.evaluation.spline_laws import segments_of
-from interp.robot.arm import Motion
 from interp.robot.kinematics.placement import IpoMode
 
 #: Fractions by which a duration may be shorter or longer than computed, and seconds: ends lie
@@ -55,10 +52,6 @@ _OF_LINE, _OF_CIRCLE = 5, 40
 #: acceleration.
 _SPLINE_JERKS: Final = (500e3, 50e3)
 _RAMP: Final = 0.08
-#: Seconds within which a part of a TIME_BLOCK takes its share, as its ends lie between samples; and
-#: the share of its speed or acceleration that one uses which cannot be as quick.
-_SHARE_SECONDS: Final = 0.015
-_FULL: Final = 0.8
 
 #: Speed, acceleration and jerk.
 _Limits = tuple[float, float, float]
@@ -69,7 +62,6 @@ def duration_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     for before, one in zip((None, *motions), motions, strict=False):
         yield from _start_violations(before, one)
         yield from _motion_violations(one, None if before is None else _known_way(before, one))
-        yield from _time_block_violations(one)
     yield from _sequence_violations(motions)
 
 
@@ -144,56 +136,6 @@ def _motion_violations(one: EndedMotion, way: Array | None) -> Iterator[Violatio
         return
     if took < wanted - shorter or (is_free and took > wanted + longer):
         yield one.broken(law, f"{took:.6f} s, not {wanted:.6f} s", rule)
-
-
-def _time_block_violations(one: EndedMotion) -> Iterator[Violation]:
-    """Yield parts of a TIME_BLOCK that do not take their shares of its time.
-
-    A part may take longer that uses the programmed speed or acceleration.
-    """
-    motion = one.motion
-    shares = list(_shares_of_time(motion))
-    if not shares or not one.begins or not one.stops:
-        return
-    first, last = one.poses(one.ends)[:, :3, 3]
-    segments = segments_of(first, motion.parts)
-    if segments is None or motion.settings.placement.mode is not IpoMode.BASE:
-        return
-    points = np.concatenate((first[None], one.tools[:, :3, 3], last[None]))
-    ways = np.cumsum([0.0, *np.linalg.norm(np.diff(points, axis=0), axis=1)])
-    ends = np.cumsum([0.0, *(segment.length for segment in segments)])
-    times = np.concatenate(([one.start], one.path.times[one.rows], [one.end])) / 1e6
-    passed = np.interp(ends / ends[-1] * ways[-1], ways, times)
-    rates = change_rates(one.path.times[one.rows], ways[1:-1, None])[:, 0]
-    gains = change_rates(one.path.times[one.rows][1:], rates[:, None])[:, 0]
-    for begin, end, wanted in shares:
-        took = passed[end] - passed[begin]
-        settings = motion.parts[begin].settings or motion.settings
-        own = (times[2:-1] > passed[begin]) & (times[2:-1] <= passed[end])
-        fastest = rates[own].max(initial=0.0) / (settings.velocity * 1000.0)
-        steepest = np.abs(gains[own[1:]]).max(initial=0.0) / (settings.acceleration * 1000.0)
-        is_full = max(fastest, steepest) > _FULL
-        if took < wanted - _SHARE_SECONDS or (took > wanted + _SHARE_SECONDS and not is_full):
-            law = "a part of a TIME_BLOCK takes its share, or as long as it needs"
-            yield one.broken(law, f"{took:.3f} s, not {wanted:.3f} s")
-
-
-def _shares_of_time(motion: Motion) -> Iterator[tuple[int, int, float]]:
-    """Yield the segments between which each part of a TIME_BLOCK lies, and its seconds."""
-    begin, parts = 0, list[tuple[int, int, float]]()
-    written = [*(part.ranges for part in motion.parts), motion.ranges]
-    for number, marks in enumerate(written):
-        for mark in marks:
-            if mark.keyword != "TIME_BLOCK":
-                continue
-            if mark.edge == "PART":
-                parts.append((begin, number, mark.value or 0.0))
-            elif mark.edge == "END":
-                whole = math.fsum(share for _, _, share in parts) or 1.0
-                for start, end, share in parts or [(begin, number, 1.0)]:
-                    yield start, end, (mark.value or 0.0) * share / whole
-                parts = []
-            begin = number
 
 
 def _known_way(before: EndedMotion, one: EndedMotion) -> Array | None:

@@ -14,8 +14,13 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Literal
 
+from conformance.evaluation.block_laws import block_violations
 from conformance.evaluation.duration_laws import duration_violations
-from conformance.evaluation.motion_laws import blend_speed_violations, motion_violations
+from conformance.evaluation.motion_laws import (
+    blend_speed_violations,
+    motion_violations,
+    slow_blends,
+)
 from conformance.evaluation.motions import ended
 from conformance.evaluation.observation import Finding, Observation
 from conformance.evaluation.path_expectations import evaluate_on_path
@@ -110,7 +115,7 @@ def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
     if not slow:
         broken.append(trigger_violations(seen, free))
     if not slow and not stopped:
-        broken.append(duration_violations(free))
+        broken += duration_violations(free), block_violations(free), slow_blends(free)
     for one in chain(*broken):
         file, line = (one.event.file, one.event.line) if one.event else ("", 0)
         is_sure = not one.rule or basis(one.rule).may_fail

@@ -44,6 +44,14 @@ _POINT: Final = ("X", "Y", "Z")
 _ANGLES: Final = ("A", "B", "C")
 #: The smallest number of samples in a blend that is checked.
 _FEWEST: Final = 4
+#: The smallest number that shows accelerations and jerks in a blend; the share of its speed that a
+#: motion has lost where a blend slows it down; the shares of a limit that is used then, between PTP
+#: and between lines: samples miss peaks, and the axes of lines have splines.
+_MANY: Final = 20
+_SLOWED: Final = 0.88
+_USED_BY_AXES, _USED_BY_TOOL = 0.77, 0.7
+#: Shares of a speed from which it counts as steady, and as the programmed one.
+_STEADY, _FULL = 0.97, 0.99
 
 
 def motion_violations(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
@@ -328,3 +336,65 @@ def blend_speed_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation
         gain = float(np.linalg.norm(change_rates(times[1:], moves), axis=1).max())
         if gain > one.machine.acceleration.path * RATE_MARGIN:
             yield one.broken("in a blend the tool keeps $ACC_MA.CP", f"{gain:.4f} m/s²")
+
+
+def slow_blends(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+    """Yield blends that slow both motions down further than docs/motion.md says of our simulator.
+
+    Where the arm was faster before and is faster behind, an axis or the path nearly uses its speed,
+    acceleration or jerk; and C_VEL keeps the speed between two lines that have the same.
+    """
+    for one, other in pairwise(motions):
+        sides = one, other
+        are_ptp = all(each.motion.kind in ("PTP", "SPTP") for each in sides)
+        are_lines = all(each.motion.kind in ("LIN", "SLIN") for each in sides)
+        if one.stops or other.begins or not follows(one, other) or not (are_ptp or are_lines):
+            continue
+        first, last = np.searchsorted(one.path.times, [one.end, other.start])
+        own, next_own = (each.axis_rates for each in sides)
+        if last - first < _MANY or own is None or next_own is None or _is_uneven(one, other):
+            continue
+        times, rows = one.path.times[first:last], one.path.axes[first:last]
+        before, behind = (_shares_of_speed(each, are_ptp=are_ptp) for each in sides)
+        poses, used = one.poses(rows), 0.0
+        for order, most in enumerate(np.maximum(own, next_own)):
+            rows = change_rates(times[order:], rows)
+            used = max(used, float((np.abs(rows) / most).max()))
+        if are_lines:
+            moves, settings = change_rates(times, poses[:, :3, 3]) / 1000.0, one.motion.settings
+            speeds = np.linalg.norm(moves, axis=1)
+            gain = float(np.linalg.norm(change_rates(times[1:], moves), axis=1).max())
+            used = max(used, gain / settings.acceleration, speeds.max() / settings.velocity)
+            is_steady = speeds.min() > _STEADY * speeds.max()
+            is_fast = min(before.max(), behind.max()) > _FULL
+            if one.motion.criteria[0] == "C_VEL" and is_fast and not is_steady:
+                yield one.broken(
+                    "C_VEL keeps the speed between two lines", f"{speeds.min():.4f} m/s"
+                )
+        is_slowed = before[-1] < _SLOWED * before.max() and behind[0] < _SLOWED * behind.max()
+        if is_slowed and used < (_USED_BY_AXES if are_ptp else _USED_BY_TOOL):
+            law = "a blend is no slower than an axis or the path makes it"
+            yield one.broken(law, f"{used:.1%} of them")
+
+
+def _is_uneven(one: EndedMotion, other: EndedMotion) -> bool:
+    """Return whether two motions differ in frames or speed, or have those of T1 or a fixed tool."""
+    first, second = one.motion.settings, other.motion.settings
+    return (
+        first.placement != second.placement
+        or (first.velocity, first.acceleration) != (second.velocity, second.acceleration)
+        or first.is_reduced
+        or first.placement.mode is not IpoMode.BASE
+    )
+
+
+def _shares_of_speed(one: EndedMotion, *, are_ptp: bool) -> Array:
+    """Return the shares of its programmed speed that a motion has between its samples, or 0."""
+    rows = one.path.axes[one.rows]
+    if len(rows) < _FEWEST or one.axis_rates is None:
+        return np.zeros(1)
+    times = one.path.times[one.rows]
+    if are_ptp:
+        return np.asarray((np.abs(change_rates(times, rows)) / one.axis_rates[0]).max(axis=1))
+    moves = change_rates(times, one.tools[:, :3, 3])
+    return np.asarray(np.linalg.norm(moves, axis=1) / (one.motion.settings.velocity * 1000.0))

@@ -42,7 +42,7 @@ _EQUAL: Final = 1e-6
 
 
 @dataclass(frozen=True)
-class _Segment:
+class Segment:
     """A segment (n, 3) in mm, with unit tangents and curvature vectors at its ends, (2, 3) each.
 
     Those of SPL are not known from its own points: ``is_exact`` is not set then.
@@ -87,7 +87,7 @@ def _off_block(one: EndedMotion) -> str:
     places, off = _along(lines, tools[:, :3, 3])
     if off.max() > TOLERANCE_MM:
         return f"{off.max():.3f} mm beside it"
-    chains = _chains(segments)
+    chains = chains_of(segments)
     rotations = _rotations(start[:3, :3], one)
     if rotations is not None:
         wanted = _swept(chains, segments, rotations, places)
@@ -134,7 +134,7 @@ def _off_ptp_block(one: EndedMotion) -> str:
 # ----------------------------------------------------------------------------- shape of segments
 
 
-def segments_of(start: Array, parts: Sequence[SplinePart]) -> list[_Segment] | None:
+def segments_of(start: Array, parts: Sequence[SplinePart]) -> list[Segment] | None:
     """Return the segments of a block; ``None`` if one is short or a target is not numeric."""
     points, middles = [start], []
     for part in parts:
@@ -144,7 +144,7 @@ def segments_of(start: Array, parts: Sequence[SplinePart]) -> list[_Segment] | N
             return None
         points.append(point)
         middles.append(middle)
-    shapes: list[_Segment | None] = []
+    shapes: list[Segment | None] = []
     for part, middle, (first, last) in zip(parts, middles, pairwise(points), strict=True):
         try:
             shapes.append(_exact(part.kind, first, middle, last))
@@ -169,24 +169,24 @@ def _point(target: Target, before: Array) -> Array | None:
     return np.array([target.get(name, value) for name, value in zip(_POINT, before, strict=True)])
 
 
-def _exact(kind: str, first: Array, middle: Array | None, last: Array) -> _Segment | None:
+def _exact(kind: str, first: Array, middle: Array | None, last: Array) -> Segment | None:
     """Return a SLIN or SCIRC; ``None`` for SPL. Raises `ValueError` for another kind, or no arc."""
     if kind == "SPL":
         return None
     if kind == "SLIN":
         along = (last - first) / np.linalg.norm(last - first)
         points = drawn("line", np.array([first, last]), _POINTS)
-        return _Segment(points, True, np.array([along, along]), np.zeros((2, 3)))
+        return Segment(points, True, np.array([along, along]), np.zeros((2, 3)))
     if kind != "SCIRC" or middle is None:
         raise ValueError(kind)
     centre, axis = circle_of(first, middle, last)
     outward = np.array([first, last]) - centre
     radius = float(np.linalg.norm(outward[0]))
     points = drawn("circle", np.array([first, middle, last]), 4 * _POINTS)
-    return _Segment(points, True, np.cross(axis, outward) / radius, -outward / radius**2)
+    return Segment(points, True, np.cross(axis, outward) / radius, -outward / radius**2)
 
 
-def _run(points: Array, before: _Segment | None, after: _Segment | None) -> list[_Segment]:
+def _run(points: Array, before: Segment | None, after: Segment | None) -> list[Segment]:
     """Return a run of SPL between two exact segments; ``None`` at an end of the block."""
     spans = np.linalg.norm(np.diff(points, axis=0), axis=1)
     slopes, bends = _cubic(
@@ -200,7 +200,7 @@ def _run(points: Array, before: _Segment | None, after: _Segment | None) -> list
     if after is not None:
         bends[-1] = after.bends[0]
     return [
-        _Segment(
+        Segment(
             _quintic(points[n : n + 2], slopes[n : n + 2], bends[n : n + 2], span),
             False,
             slopes[n : n + 2],
@@ -278,7 +278,7 @@ def _along(lines: Array, rows: Array) -> tuple[Array, Array]:
 # --------------------------------------------------------------------- orientation, external axes
 
 
-def _chains(segments: Sequence[_Segment]) -> list[tuple[int, int]]:
+def chains_of(segments: Sequence[Segment]) -> list[tuple[int, int]]:
     """Return first and last + 1 of the segments that are passed without a stop."""
     cuts = [
         place
@@ -310,7 +310,7 @@ def _rotations(start: Array, one: EndedMotion) -> Array | None:
 
 def _swept(
     chains: Sequence[tuple[int, int]],
-    segments: Sequence[_Segment],
+    segments: Sequence[Segment],
     rotations: Array,
     places: Array,
 ) -> Array:
@@ -340,7 +340,7 @@ def _external_targets(one: EndedMotion) -> Array | None:
 
 def _carried(
     chains: Sequence[tuple[int, int]],
-    segments: Sequence[_Segment],
+    segments: Sequence[Segment],
     externals: Array,
     places: Array,
 ) -> Array:
@@ -360,7 +360,7 @@ def _carried(
 
 
 def _by_chain(
-    chains: Sequence[tuple[int, int]], segments: Sequence[_Segment], places: Array
+    chains: Sequence[tuple[int, int]], segments: Sequence[Segment], places: Array
 ) -> Iterator[tuple[int, int, Array, Array]]:
     """Yield the segments of each chain, the lengths at its points, and which places are on it."""
     sums = np.cumsum([0.0, *(segment.length for segment in segments)])

@@ -199,8 +199,8 @@ class CentralWrist:
             distance = np.hypot(out, height)
             within = np.clip(distance, abs(upper - lower), upper + lower)
             within = np.where(np.abs(within - distance) < _MARGIN, within, math.nan)
-            cosine = (within**2 - upper**2 - lower**2) / (2.0 * upper * lower)
-            bent = np.copysign(np.arccos(np.clip(cosine, -1.0, 1.0)), elbow)
+            sides = (upper + lower) ** 2 - within**2, within**2 - (upper - lower) ** 2
+            bent = np.copysign(2.0 * np.arctan2(*np.sqrt(sides)), elbow)  # the law of cosines
         a2 = np.arctan2(lower * np.sin(bent), upper + lower * np.cos(bent))
         a3 = math.atan2(up, forward) - bent
         main: Array = np.stack((a1, a2 - np.arctan2(height, out), a3), axis=-1) + self._zeros[:3]

@@ -257,14 +257,14 @@ class NumericKinematics:
     # ------------------------------------------------------------------------------- the geometry
 
     def _wrist(self, axes: Array) -> Array:
-        """Return the place of axis 5, or of the last axis, relative to axis 1 turned by A1."""
+        """Return the place of axis 5, or of the last one, relative to axis 1 turned by A1.
+
+        If that one slides, its place moves with it.
+        """
         theta = axes[..., : self._count] * self._units
         pose = np.broadcast_to(np.eye(4), (*theta.shape[:-1], 4, 4)).copy()
-        last = min(5, self._count)
-        for place in range(1, last):
-            pose = pose @ self._frames[place]
-            if place < last - 1:
-                pose = pose @ self._move(place, theta[..., place])
+        for place in range(1, min(5, self._count)):
+            pose = pose @ self._frames[place] @ self._move(place, theta[..., place])
         found: Array = pose[..., :3, 3]
         return found
 

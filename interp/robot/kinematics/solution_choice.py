@@ -41,7 +41,10 @@ class TargetStatus(Enum):
 
 
 class Singularity(Enum):
-    """Positions in which an axis is undetermined; the values are indices of $SINGUL_POS."""
+    """Positions in which an axis is undetermined; the values are indices of $SINGUL_POS.
+
+    In the first a bit of Status is, in the second the next, in the third the last.
+    """
 
     OVERHEAD = 1
     EXTENDED = 2
@@ -187,7 +190,7 @@ def _choose(
     if status is None and start is not None and preference is TargetStatus.SOURCE:
         status = int(arm.status(start))
     if status is not None:
-        solutions = solutions[_with_status(arm, solutions, status)]
+        solutions = solutions[[_has_status(arm, one, status) for one in solutions.tolist()]]
     if not len(solutions):
         raise Fault("unreachable", "the target cannot be reached", number=1366, rules=("MOT-15",))
     origin = tuple(start) if start is not None else (0.0,) * 6
@@ -206,13 +209,10 @@ def _choose(
     return Solution(found, int(arm.status(found)), turn_of(found), singularities(arm, found))
 
 
-def _with_status(arm: Kinematics, solutions: Array, status: int) -> npt.NDArray[np.bool_]:
-    """Return which solutions ``(n, 6)`` have a Status; in a singularity its bit is ignored."""
-    free = 1 * (arm.distance_to_axis_1(solutions) <= _OVERHEAD)
-    free |= 2 * (np.abs(solutions[:, 2] - arm.elbow) <= _ZERO)
-    free |= 4 * (np.abs(solutions[:, 4]) <= _ZERO)
-    have: npt.NDArray[np.bool_] = (arm.status(solutions) ^ status) & _ALL_BITS & ~free == 0
-    return have
+def _has_status(arm: Kinematics, solution: Sequence[float], status: int) -> bool:
+    """Return whether six axes have a Status; in a singularity its bit is ignored [POS-08]."""
+    free = sum(1 << kind.value - 1 for kind in singularities(arm, solution))
+    return (int(arm.status(solution)) ^ status) & _ALL_BITS & ~free == 0
 
 
 def _within_limits(

@@ -10,17 +10,16 @@ from interp.robot.kinematics.kinematics import Array
 
 #: Nodes and weights of Gauss-Legendre quadrature on [0, 1], exact for polynomials of degree 9.
 _NODES, _WEIGHTS = np.stack(np.polynomial.legendre.leggauss(5)) / 2.0 + [[0.5], [0.0]]
-_PARTS = 32
+_KNOTS = np.linspace(0.0, 1.0, 33)
 _EXACT = 1e-12  # of u
 
 
 class ArcLength:
     """The arc length of a curve up to any parameter, computed from its tangents."""
 
-    def __init__(self, tangents: Callable[[Array], Array], parts: int = _PARTS) -> None:
+    def __init__(self, tangents: Callable[[Array], Array]) -> None:
         self._tangents = tangents
-        self._knots = np.linspace(0.0, 1.0, parts + 1)
-        steps = self._between(self._knots[:-1], self._knots[1:])
+        steps = self._between(_KNOTS[:-1], _KNOTS[1:])
         self._sums = np.concatenate(([0.0], np.cumsum(steps)))
 
     @property
@@ -30,15 +29,15 @@ class ArcLength:
 
     def at(self, u: Array) -> Array:
         """Return the lengths ``(n,)`` from 0 to u."""
-        place = np.searchsorted(self._knots[1:-1], u, side="right")
-        lengths: Array = self._sums[place] + self._between(self._knots[place], u)
+        place = np.searchsorted(_KNOTS[1:-1], u, side="right")
+        lengths: Array = self._sums[place] + self._between(_KNOTS[place], u)
         return lengths
 
     def parameters(self, lengths: Array) -> Array:
         """Return the parameters in [0, 1] at which lengths are reached."""
         wanted = np.clip(lengths, 0.0, self.length)
         low, high = np.zeros_like(wanted), np.ones_like(wanted)
-        u = np.interp(wanted, self._sums, self._knots)
+        u = np.interp(wanted, self._sums, _KNOTS)
         for _ in range(8):
             missing = wanted - self.at(u)
             low, high = np.where(missing >= 0.0, u, low), np.where(missing <= 0.0, u, high)

@@ -6,7 +6,7 @@ The criteria of the first motion determine them; each is at most half of its pat
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -92,11 +92,7 @@ def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
     """Return the share on which a part of the programmed speed is lost or gained [BLD-13]."""
     stretches = _piece(track, at_end=at_end).limits.stretches
     stretch = stretches[-1] if at_end else stretches[0]
-    bounds = stretch.bounds(1.0)
-    speed = share * stretch.programmed
-    size = stretch.size
-    sized = replace(bounds, velocity=speed) * size
-    return ramp(speed * size, 0.0, 0.0, sized).length / size
+    return ramp(share * stretch.programmed, 0.0, 0.0, stretch.normal).length
 
 
 def _axis_share(

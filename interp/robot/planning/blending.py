@@ -163,7 +163,7 @@ class _Corner:
             speeds = limits.velocity / np.maximum(np.abs(rates[0]), _TINY)
             programmed = min(programmed, float(speeds.min()))
         before, after = self.one.limits.stretches[-1], self.other.limits.stretches[0]
-        beside = before.bounds(1.0) * into.gear, after.bounds(1.0) * (1.0 / out.gear)
+        beside = before.bounds() * into.gear, after.bounds() * (1.0 / out.gear)
         size = before.size / into.gear
         curve_limits = constant_speed_limits(rates, limits, beside, programmed, most, size)
         return curve_limits.within(self.first.axis_limits.torques, curve)
@@ -183,7 +183,7 @@ class _Corner:
         shares = zone.before, zone.after
         straight = extended(self.tracks, run, self.first, self.second, shares)
         if straight is not None:
-            curve_limits = straight.curve_limits_of((self.first.motion.number, True, 0))
+            curve_limits = straight.limits  # of the whole run: the plan gives each section its part
         else:
             allowed = self.first.axis_limits.merged(self.second.axis_limits, np.minimum)
             paths = self.tracks.reduced_paths(curve, *self.settings) or tuple(

@@ -73,7 +73,7 @@ class Stretch:
     hard: Bounds
     constant: Bounds | None = None
 
-    def bounds(self, override: float, is_hard: bool = False) -> Bounds:
+    def bounds(self, override: float = 1.0, is_hard: bool = False) -> Bounds:
         """Return the bounds of a change of speed at an override of 0 to 1."""
         return (self.hard if is_hard else self.normal).up_to(self.programmed * override)
 

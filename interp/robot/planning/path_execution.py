@@ -153,8 +153,6 @@ class PathExecution:
                 return
             rest, state = _behind(each, route)
             yield state, each.ends, rest
-            if not rest:
-                return
 
     def _ramp_down(
         self, leg: Leg, route: Sequence[Section], time: float, is_hard: bool

@@ -57,10 +57,9 @@ class Passage:
 
     @property
     def is_over(self) -> bool:
-        """Whether all of its events were taken."""
-        places = (*places_of(self.motion), *places_of(self.motion, is_stop=True))
+        """Whether all of its events were taken; those of STOP WHEN PATH come before its end."""
         wanted: set[Taken] = {("motion_start", None), ("motion_end", None)}
-        wanted |= {("place", place.key) for place, _ in places}
+        wanted |= {("place", place.key) for place, _ in places_of(self.motion)}
         if self.into is not None:
             wanted.add(("blend_end", None))
         if self.out is not None:

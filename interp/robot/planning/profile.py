@@ -51,7 +51,6 @@ def _solved(
     """
     unit = max(bounds.velocity, target)
     asked = ruckig.InputParameter(1)
-    asked.current_position = [0.0]
     asked.current_velocity = [speed / unit]
     asked.current_acceleration = [acceleration / unit]
     asked.target_position = [length / unit]
@@ -91,7 +90,7 @@ def _searched(
     if fits(low):
         low = bisected(fits, low, max(bounds.velocity, low))
         up, down = parts(low)
-    else:  # it brakes already, and all that is left over is travelled behind that
-        low, up = target, ramp(speed, acceleration, target, bounds, final)
-        down = steady(target, 0.0)
-    return joined((up, steady(low, length - up.length - down.length), down))
+        return joined((up, steady(low, length - up.length - down.length), down))
+    # It brakes already, and all that is left over is travelled behind that.
+    direct = ramp(speed, acceleration, target, bounds, final)
+    return joined((direct, steady(target, length - direct.length)))

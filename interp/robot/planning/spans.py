@@ -228,7 +228,7 @@ def _largest_with(bend: float, bounds: Bounds) -> float:
         gain = abs(bend) * speed**2
         return (
             gain * _SPARE <= bounds.acceleration
-            and (speed + gain**2 / (2.0 * bounds.jerk)) * _SPARE <= bounds.velocity
+            and speed_after(speed, gain, 0.0, bounds.jerk) * _SPARE <= bounds.velocity
         )
 
     return bounds.velocity if fits(bounds.velocity) else bisected(fits, 0.0, bounds.velocity)

@@ -180,7 +180,7 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
             spline = CubicSpline(knots, np.array(points[first : last + 1]), bc_type="natural")
         for place in range(first, last):
             own = motion.parts[place].settings or motion.settings
-            if spans[place] == 0.0:
+            if not spans[place]:
                 pieces.append(tracks.still(points[place], own))
                 continue
             path: AxisPath
@@ -204,6 +204,6 @@ def _runs(spans: Sequence[float]) -> list[tuple[int, int]]:
     """Return the runs of segments without a stop in between; one of length zero is its own run."""
     cuts = {0, len(spans)}
     for place, span in enumerate(spans):
-        if span == 0.0:
+        if not span:
             cuts |= {place, place + 1}
     return list(pairwise(sorted(cuts)))

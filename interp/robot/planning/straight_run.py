@@ -92,8 +92,6 @@ def extended(
     one, other = first.pieces[-1], second.pieces[0]
     if first.motion.parts or second.motion.parts:  # a block has bounds of its own
         return None
-    if one.curve.placement != other.curve.placement:
-        return None
     ours, theirs = (
         [(path.velocity, path.acceleration, path.jerk) for path in piece.paths]
         for piece in (one, other)
@@ -141,9 +139,7 @@ def straight_through(
     ways[-1] *= end
     if not ways.all() or not isinstance(one, JointCurve | PosePathCurve):
         return None
-    if type(one) is not type(other):
-        return None
-    if not isinstance(one, JointCurve) and one.placement != other.placement:
+    if type(one) is not type(other) or one.placement != other.placement:
         return None
     (leaves,), (joins,) = one.axes(np.array([start])), other.axes(np.array([end]))
     shares = np.cumsum(ways)[:-1] / ways.sum()
