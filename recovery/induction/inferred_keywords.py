@@ -151,7 +151,12 @@ class InferredKeywords:
             for context, words in contexts.items()
             if context == _HEAD or (context.behind == _TYPE and len(words) <= FEWER_WORDS)
         }
-        few = {context for context, words in contexts.items() if len(words) <= context.most_words}
+        # names of one origin are not those of another one
+        few = {
+            context
+            for context, words in contexts.items()
+            if sum(len(u.origins) == 1 for u in words.values()) <= context.most_words
+        }
         self._closed = (heads | few) - {_PLAIN}
         every, closed = _total(contexts.values()), _total(contexts[c] for c in self._closed)
         head = _total(contexts[c] for c in heads)
