@@ -13,7 +13,12 @@ from os.path import commonprefix
 from statistics import mean
 
 from grammar.parser.lexer import ERROR, Lexer
+from recovery.brackets import BRACKETS, CLOSING
 from recovery.tuning import INFERRED_SHARE, QUOTED_SIGNS, SEVERAL, UNLIKELY
+
+#: Signs that are part of no other one, and those that stand ahead of operands too.
+_NOT_BESIDE = frozenset({*BRACKETS, *CLOSING, ",", "'", '"'})
+_AHEAD = frozenset("+-")
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +60,43 @@ def unknown_tokens(
         del having[sign]
     quotes = {sign for sign in single if mean(paired[sign]) >= INFERRED_SHARE}
     for sign in sorted(having, key=lambda s: (s in quotes, len(having[s]), s), reverse=True):
-        name = re.sub(r"\W", "_", "_".join(unicodedata.name(c, "sign") for c in sign)).upper()
         if sign in quotes:
-            yield from _texts_in_quotes(every, sign, lexer, f"{name}_TEXT", known)
+            yield from _texts_in_quotes(every, sign, lexer, f"{_name(sign)}_TEXT", known)
         else:
-            written = "'{}'".format(_escaped(sign, "'"))
-            yield _token(name, written, known, False, having[sign], [sign])
+            yield _token(_name(sign), _written(sign), known, False, having[sign], [sign])
+    yield from _compound_signs(every, lexer, known)
+
+
+def _compound_signs(
+    lines: Iterable[tuple[str, int]], lexer: Lexer, known: Collection[str]
+) -> Iterator[UnknownToken]:
+    """Yield signs that the lexer takes for two: operands around them and no blank between.
+
+    The second one stands alone between operands elsewhere: it is not what an operand begins with.
+    """
+    touching: dict[str, list[bool]] = defaultdict(list)
+    having: dict[str, set[int]] = defaultdict(set)
+    between: set[str] = set()
+    for line, file in lines:
+        lexemes, offsets = lexer.located(line)
+        found = [(t, at) for t, at in zip(lexemes, offsets, strict=True) if not t.isspace()]
+        sorts = "".join(
+            "s" if _is_operator(t) else "x" if t in _NOT_BESIDE else "_" for t, _ in found
+        )
+        between |= {found[at.start() + 1][0] for at in re.finditer("(?=_s_)", sorts)}
+        for place in (at.start() + 1 for at in re.finditer("(?=_ss_)", sorts)):
+            (left, start), (right, end) = found[place : place + 2]
+            touching[left + right].append(start + len(left) == end)
+            having[left + right].add(file)
+    for sign in sorted(having, key=lambda s: (-len(having[s]), s)):
+        if mean(touching[sign]) >= INFERRED_SHARE and sign[-1] in between - _AHEAD:
+            yield _token(_name(sign), _written(sign), known, False, having[sign], [sign])
+
+
+def _is_operator(lexeme: str) -> bool:
+    """Return whether a lexeme is one character that may be an operator, or part of one."""
+    is_sign = lexeme.isprintable() and not lexeme.isalnum() and lexeme not in _NOT_BESIDE
+    return len(lexeme) == 1 and is_sign and lexeme not in "_$"
 
 
 def _texts_in_quotes(
@@ -74,7 +110,7 @@ def _texts_in_quotes(
     for line, file in lines:
         for text in _inside(line, quote) or ():
             groups[_beginning(text)].append((text, file))
-    written = "'{}'".format(_escaped(quote, "'"))
+    written = _written(quote)
     found = []
     for group in groups.values():
         content = _content([text for text, _ in group], quote)
@@ -84,6 +120,15 @@ def _texts_in_quotes(
         seen = [text for text, _ in new]
         found.append(_token(name, f"{written} {content} {written}", known, True, files, seen))
     yield from sorted((one for one in found if one.files), key=lambda one: -len(one.files))
+
+
+def _name(sign: str) -> str:
+    """Return a name for the token of a sign."""
+    return re.sub(r"\W", "_", "_".join(unicodedata.name(c, "sign") for c in sign)).upper()
+
+
+def _written(sign: str) -> str:
+    return "'{}'".format(_escaped(sign, "'"))
 
 
 def _token(

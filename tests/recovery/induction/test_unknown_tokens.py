@@ -20,6 +20,7 @@ from recovery.proposals.unknown_tokens import unknown_tokens
         (["GO @A TO @B"], "COMMERCIAL_AT : '@' ;", ("@",)),
         (["X && Y"], "AMPERSAND_AMPERSAND : '&&' ;", ("&&",)),
         (["X && Y", "&X"], "AMPERSAND : '&' ;", ("&",)),  # it is a sign of its own, too
+        (["X *+ Y", "X */Y", "X / Y"], "ASTERISK_SOLIDUS : '*/' ;", ("*/",)),
         (
             ["X := 'a b'", "Y('C1')"],
             "APOSTROPHE_TEXT : '\\'' [A-Za-z] [A-Za-z0-9 ]* '\\'' ;",
@@ -42,6 +43,12 @@ def test_signs_and_quotes(toy: Grammar, lines: list[str], rule: str, seen: tuple
     assert (rule, seen[0]) == (found.rule, found.seen[0])
     assert found.is_value == ("TEXT" in rule)
     read(f"{toy.text}\n{rule}\n")
+
+
+@pytest.mark.parametrize("line", ["X * / Y", "X *(Y)", "F()*Y", "X +*"])
+def test_two_signs_stay_two(toy: Grammar, line: str) -> None:
+    """With a blank between, beside a bracket, without operands around them."""
+    assert [] == list(unknown_tokens([(line, 0), ("X / Y * Z", 1)], lexer_of(toy), toy.by_name))
 
 
 def test_no_letter_is_a_sign(toy: Grammar) -> None:
