@@ -32,6 +32,13 @@ def test_a_name_before_a_type(toy: Grammar) -> None:
     assert not [w for w in _keywords(toy, many, ("HALT",)).words if w.startswith("FIXED")]
 
 
+@pytest.mark.parametrize(("named", "found"), [("", 20), ("{}", 0)])
+def test_many_words_of_several_origins(toy: Grammar, named: str, found: int) -> None:
+    """What stands alone on lines are keywords, however many, if no origin has others."""
+    files = {o: "".join(f"W{n}{named.format(o)}\n" * 2 for n in range(20)) for o in "ABC"}
+    assert found == len(_keywords(toy, files).words)
+
+
 @pytest.mark.parametrize(("least", "found"), [(2, False), (1, True)])
 def test_a_word_of_one_origin(toy: Grammar, least: int, found: bool) -> None:
     """Two files of one origin show a keyword only where nothing asks for a second origin."""
