@@ -18,6 +18,7 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Raw
 from interp.bytecode.program import CodeKind, Program
 from interp.bytecode.vm import executor as vm
+from interp.bytecode.vm.frames import Frames
 from interp.bytecode.vm.names import InFrame, Names
 from interp.bytecode.vm.services import Services
 from interp.bytecode.vm.state import Call, Completion, OperandStack, Operation, State
@@ -251,6 +252,33 @@ def _then(act: Callable[[], None], after: Operation) -> Operation:
     return operation
 
 
+class _Frames(Frames):
+    """Frames that the machine in C opens and closes."""
+
+    def __init__(self, program: Program, core: _State) -> None:
+        super().__init__(program, cast("State", core))
+        self._core = core
+
+    def begin(self, number: int) -> None:
+        """Create the first frame."""
+        self._core.begin(number)
+
+    def open(self, number: int, serial: int, _after: Operation) -> None:
+        """See `Frames.open`."""
+        core, found = self._core, self.captures(number, serial)
+        if not core.open_frame(number):
+            raise fault("stack")
+        core[core.fp : core.fp + len(found)] = found
+
+    def close(self) -> None:
+        """Drop the current frame."""
+        self._core.close_frame()
+
+    def first_cell(self, serial: int) -> int | None:
+        """See `Frames.first_cell`."""
+        return self._core.frame_of(serial)
+
+
 class Machine(vm.Machine):
     """Runs a verified program in C, otherwise like `interp.bytecode.vm.executor.Machine`."""
 
@@ -265,8 +293,8 @@ class Machine(vm.Machine):
         state = cast("_State", self._state)
         return cast("ThreadedCode", _NativeCode(program, state, self._services))
 
-    def _begin(self, number: int) -> None:
-        self._core.begin(number)
+    def _made_frames(self) -> Frames:
+        return _Frames(self._program, self._core)
 
     @property
     def _core(self) -> _State:
@@ -303,16 +331,3 @@ class Machine(vm.Machine):
 
     def _memory(self) -> object:
         return self._core.snapshot()
-
-    def _push_frame(self, number: int, serial: int, _after: Operation) -> None:
-        core = self._core
-        found = self._captures(number, serial)
-        if not core.open_frame(number):
-            raise fault("stack")
-        core[core.fp : core.fp + len(found)] = found
-
-    def _pop_frame(self) -> None:
-        self._core.close_frame()
-
-    def _frame_of(self, serial: int) -> int | None:
-        return self._core.frame_of(serial)

@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import marshal
 from collections.abc import Callable
-from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Raw
 from interp.bytecode.instruction_set.table import MAX_CELLS
-from interp.bytecode.program import CodeKind, Mode, Parameter, Program, stack_cells
+from interp.bytecode.program import CodeKind, Program
 from interp.bytecode.verifier.verify import Verified
+from interp.bytecode.vm.frames import Frames
 from interp.bytecode.vm.names import InFrame, Names
 from interp.bytecode.vm.services import NOT_IN_CONDITIONS, Services
 from interp.bytecode.vm.state import Completion, Operation, State
@@ -42,7 +42,7 @@ from interp.port.requests import (
 )
 from interp.program.load import Limits
 from interp.values.builtins import Randomness
-from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
+from interp.values.faults import Fault, LinkError, RuntimeFailure
 from support.lazy_dataclass import dataclass
 
 
@@ -103,6 +103,7 @@ class Machine:
         self._services = Services(program, self._state, limits, sink, self._random)
         self._services.leave_action, self._services.finish = self._leave_action, self._finish
         self._threaded = self._made_ready(program)
+        self._frames = self._made_frames()
         self._entered: list[_Entered] = []
         self._final: Request | None = None
         number = _routine(program, routine.upper() if isinstance(routine, str) else routine)
@@ -123,15 +124,14 @@ class Machine:
         cells += [None] * (first - len(cells))
         return State(cells, limits.depth, first, first + MAX_CELLS - data)
 
-    def _made_ready(self, program: Program) -> ThreadedCode:
-        return ThreadedCode(program, self._state, self._services)
+    def _made_frames(self) -> Frames:
+        return Frames(self._program, self._state)
 
     def _begin(self, number: int) -> None:
-        """Create the first frame."""
-        state = self._state
-        state.code, first, frame = number, state.fp, self._threaded.frames[number]
-        state.cells[first : first + frame] = [None] * frame
-        state.serials = state.serial = 1
+        self._frames.begin(number)
+
+    def _made_ready(self, program: Program) -> ThreadedCode:
+        return ThreadedCode(program, self._state, self._services)
 
     # ----------------------------------------------------------------------- the port
 
@@ -192,8 +192,8 @@ class Machine:
         state, counter, before = self._state, self._services.counter, self._open
         if before.request is not None:  # it will be asked again
             before = _Open(None, before.request, before.completion)
-        number, serial = self._parts_of(code, CodeKind.ACTION)
-        self._push_frame(number, serial, self._threaded.entries[number])
+        number, serial = self._frames.of_handle(code, CodeKind.ACTION)
+        self._frames.open(number, serial, self._threaded.entries[number])
         self._entered.append(_Entered(len(state.calls), before, counter.guard, self._final))
         self._final = None
         self._services.entered += 1
@@ -204,11 +204,11 @@ class Machine:
     def evaluate(self, code: CodeHandle, read: Reader) -> Value:
         """Return the value of a condition; raises `interp.values.faults.Fault`."""
         state = self._state
-        number, serial = self._parts_of(code, CodeKind.CONDITION)
+        number, serial = self._frames.of_handle(code, CodeKind.CONDITION)
         height, calls, guard = len(state.stack), len(state.calls), self._services.counter.guard
         functions = state.functions
         operation: Operation | None = self._threaded.entries[number]
-        self._push_frame(number, serial, lambda: None)
+        self._frames.open(number, serial, lambda: None)
         self._services.counter.guard = Guard.OFF  # it holds for a statement, and this is none
         state.reader = read
         state.most_calls += 1
@@ -228,7 +228,7 @@ class Machine:
             self._services.entered -= 1
             del state.stack[height:]
             while len(state.calls) > calls:
-                self._pop_frame()
+                self._frames.close()
 
     def companion(self, routine: str, sink: Sink | None = None) -> Machine:
         """Return another machine with the same data lists; see `interp.port.executor.Executor`."""
@@ -261,7 +261,7 @@ class Machine:
     def _memory(self) -> object:
         """Return the current frame, the open calls, the data lists and the cells of all frames."""
         state, data = self._state, self._program.addresses[-1]
-        end = state.fp + self._threaded.frames[state.code]
+        end = state.fp + self._program.frames[state.code]
         cells = state.cells[:data], state.cells[self._first : end], state.stack
         frame = state.code, state.fp, state.base, state.statement, state.serial, state.serials
         counts = state.left, state.quota, state.whole, state.stops
@@ -297,7 +297,7 @@ class Machine:
         found: list[StackFrame] = []
         depth, actions = self.depth, {one.calls for one in self._entered}
         for number in range(len(self._state.calls) + 1):
-            code, _, statement = self._frame(number)
+            code, _, statement = self._frames.at(number)
             code_object = self._program.codes[code]
             line = code_object.line
             if statement >= 0:
@@ -318,16 +318,8 @@ class Machine:
         """Assign a value to a variable; see `interp.port.inspection`."""
         self._names(frame).put(text, value)
 
-    def _frame(self, number: int) -> tuple[int, int, int]:
-        """Return code object, first cell and statement of a frame; 0 is the innermost frame."""
-        state = self._state
-        if number == 0:
-            return state.code, state.fp, state.statement
-        _, code, first, _, statement, _ = state.calls[-number]
-        return code, first, statement
-
     def _names(self, number: int) -> Names:
-        code, first, _ = self._frame(number)
+        code, first, _ = self._frames.at(number)
         return Names(self._program, InFrame(self._state.cells, code, first))
 
     def select(self, line: int) -> None:
@@ -385,21 +377,16 @@ class Machine:
         _, target = self._program.codes[state.code].instructions[state.statement].operands
         return self._threaded.body(state.code)[target]
 
-    # ----------------------------------------------------------------------- frames
+    # ----------------------------------------------------------------------- actions
 
     def _is_in_action(self) -> bool:
         return bool(self._entered) and self._entered[-1].calls == len(self._state.calls)
-
-    def _pop_frame(self) -> None:
-        state = self._state
-        call = state.calls.pop()
-        _, state.code, state.fp, state.base, state.statement, state.serial = call
 
     def _leave_frame(self) -> None:
         """Drop the current frame and, if it is an action, what the action has interrupted."""
         if self._is_in_action():
             self._forget_entered()
-        self._pop_frame()
+        self._frames.close()
 
     def _forget_entered(self) -> _Entered:
         self._services.entered -= 1
@@ -409,7 +396,7 @@ class Machine:
     def _leave_action(self) -> None:
         """End an action: what it has interrupted continues, or makes its request again."""
         self._state.request = End(self._services.at())
-        self._pop_frame()
+        self._frames.close()
         entered = self._forget_entered()
         self._services.counter.guard = entered.guard
         self._open, self._final = entered.open, entered.final
@@ -417,58 +404,6 @@ class Machine:
     def _finish(self) -> None:
         """End the program, because its first routine has ended."""
         self._state.request = self._final = End(self._services.at())
-
-    def _parts_of(self, code: CodeHandle, kind: CodeKind) -> tuple[int, int]:
-        """Return the number of a code object and the serial of the frame of its handle."""
-        serial, number = divmod(code.number, len(self._program.codes))
-        if self._program.codes[number].kind is not kind:
-            raise ValueError(f"{code} is no {kind.value}")
-        return number, serial
-
-    def _push_frame(self, number: int, serial: int, after: Operation) -> None:
-        """Create a frame for an action or a condition; raises the fault ``stack``."""
-        state, frames = self._state, self._threaded.frames
-        first = state.fp + frames[state.code]
-        if first + frames[number] > state.most_cells:
-            raise fault("stack")
-        found = self._captures(number, serial)
-        found += [None] * (frames[number] - len(found))
-        state.cells[first : first + frames[number]] = found
-        state.calls.append((after, state.code, state.fp, state.base, state.statement, state.serial))
-        state.code, state.fp, state.base = number, first, len(state.stack)
-        state.statement, state.serial = -1, 0
-
-    def _captures(self, number: int, serial: int) -> list[Any]:
-        """Return the arguments of an action or condition; none if the owner's frame has ended."""
-        code = self._program.codes[number]
-        owner = self._frame_of(serial) if code.captures else None
-        if owner is None:
-            return []
-        found: list[Any] = []
-        for parameter, place in zip(code.parameters, code.captures, strict=True):
-            found += self._captured(number, parameter, owner, place)
-        return found
-
-    def _captured(self, number: int, parameter: Parameter, owner: int, place: int) -> list[Any]:
-        """Return the reference or view to a variable in the owner's frame, for a parameter."""
-        code = self._program.codes[number]
-        assert code.owner is not None, "only what has an owner captures"
-        for slot in self._program.slots(self._program.codes[code.owner]):
-            found = slot.variable
-            is_there = slot.offset == place and isinstance(found, Parameter)
-            if is_there and isinstance(found, Parameter) and found.mode is not Mode.IN:
-                return self._state.cells[owner + place : owner + place + stack_cells(parameter)]
-        return [owner + place]
-
-    def _frame_of(self, serial: int) -> int | None:
-        """Return the first cell of the frame with this serial, or ``None`` if it has ended."""
-        state = self._state
-        if state.serial == serial:
-            return state.fp
-        for call in reversed(state.calls):
-            if call[5] == serial:
-                return call[2]
-        return None
 
 
 def _given(completion: Completion, reply: Value | Fault | None) -> Operation:
