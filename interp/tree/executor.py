@@ -272,7 +272,7 @@ class TreeExecutor:
         if run.depth >= run.limits.depth or not run.has_room(call.routine):
             return fault("stack")
         if run.calls is not None:
-            run.changes += 1
+            run.changed()
             run.calls.call(self._run.at(stack[-1].frame), call.routine.name)
         stack.append(self._active(call))
         self._run.depth += 1

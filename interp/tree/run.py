@@ -148,10 +148,14 @@ class ProgramState:
         if self.lines is not None:
             self.lines.line(self.at(frame))
 
+    def changed(self) -> None:
+        """Note that this pass of a loop differs from the one before."""
+        self.changes += 1
+
     def charge(self, function: str) -> None:
         """Count a predefined function, or the operator ``:``; raise `BudgetExhausted`."""
         if weight := WEIGHTS.get(function, 0):
-            self.changes += 1
+            self.changed()
             self.functions -= weight
             if self.functions < 0:
                 raise self.limits.overrun()
@@ -159,17 +163,17 @@ class ProgramState:
     def asked(self) -> None:
         """Begin a new slice, after any request."""
         self.due = self.begun + self.limits.per_slice
-        self.changes += 1
+        self.changed()
 
     def stored(self, old: Value | None, new: Value | None) -> None:
         """Note that a value was stored in place of another."""
         # Compared as text, because 1, 1.0 and TRUE are equal in Python, and so are 0.0 and -0.0.
         if isinstance(new, StructureValue | ArrayValue) or repr(old) != repr(new):
-            self.changes += 1
+            self.changed()
 
     def random(self) -> float:
         """Return the next random number, in [0, 1)."""
-        self.changes += 1
+        self.changed()
         return self._random()
 
     def again(self, place: object, last: Round | None) -> Round:

@@ -97,7 +97,7 @@ class Statements(Motions):
         except _Return as returned:
             value = returned.value
         if self.run.returns is not None:
-            self.run.changes += 1
+            self.run.changed()
             self.run.returns.leave(self.at(), self.frame.name)
         return value
 
@@ -187,7 +187,7 @@ class Statements(Motions):
 
     def _branch(self, way: int) -> None:
         if self.run.branches is not None:
-            self.run.changes += 1
+            self.run.changed()
             self.run.branches.branch(self.at(), way)
 
     def _is_true(self, condition: ast.Expression) -> Steps[bool]:
