@@ -113,23 +113,20 @@ def swrite(
         return None, {1: state_value("CMD_ABORT")}
     text: ArrayValue = copied(target)
     end, hits, result = start, 0, "CMD_OK"
-    left = list(values)
     try:
         for piece in _pieces(text_of(pattern)):
             if isinstance(piece, str):
                 written = piece
-            elif left and hits < _MOST:
-                written = _written(piece, known(left[0]))
-            else:
+            elif hits in (len(values), _MOST):
                 raise _Mismatch
+            else:
+                written = _written(piece, known(values[hits]))
             if end + len(written) > len(text):
                 raise _Mismatch
             text.elements[end : end + len(written)] = written
             end += len(written)
-            if not isinstance(piece, str):
-                left.pop(0)
-                hits += 1
-        if left:
+            hits += not isinstance(piece, str)
+        if hits != len(values):
             raise _Mismatch
     except _Mismatch:
         result = "FMT_ERR"

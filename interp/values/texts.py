@@ -94,21 +94,19 @@ def _strcopy(target: Value | None, text: Value) -> Outcome:
 #: The syntax of an INT and of a REAL.
 INTEGER = re.compile(r"[+-]?[0-9]+")
 DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-#: More digits than any 32-bit number needs; longer texts are rejected before conversion.
-_DIGITS = 64
 
 
 def integer_of(text: str) -> int | None:
     """Return a decimal INT, or ``None`` if the text is not one or the number is too large."""
-    if len(text) > _DIGITS or not INTEGER.fullmatch(text):
+    if not INTEGER.fullmatch(text):
         return None
-    number = int(text)
-    return number if INT_MIN <= number <= INT_MAX else None
+    number = float(text)  # exact for every INT, and of any number of digits
+    return int(number) if INT_MIN <= number <= INT_MAX else None
 
 
 def real_of(text: str) -> float | None:
     """Return a decimal REAL, or ``None`` if the text is not one or the number is too large."""
-    if len(text) > _DIGITS or not DECIMAL.fullmatch(text):
+    if not DECIMAL.fullmatch(text):
         return None
     try:
         return single(float(text))
