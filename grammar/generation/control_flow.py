@@ -1,7 +1,7 @@
 """Blocks of statements: branches, loops, jumps, returns.
 
 Every loop is bounded, by its limits or by its own counter. As in `statements`, a rule writes into a
-`Code` and returns whether it could.
+`RoutineWriter` and returns whether it could.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from grammar.generation.code import Code
 from grammar.generation.expressions import count, expression, operand, read, text, truth
+from grammar.generation.routine_writer import RoutineWriter
 from grammar.generation.scope import Variable
 from grammar.generation.statements import assignment
 from grammar.generation.types import COLOUR, MODE
@@ -23,13 +23,13 @@ _SELECTORS: Final[tuple[Type, ...]] = (INT, CHAR, COLOUR, MODE, INT)
 _DEEPEST: Final = 5
 
 
-def statement(code: Code) -> None:
+def statement(code: RoutineWriter) -> None:
     """Write a statement; an assignment if the drawn rule finds nothing to use."""
     if not code.choices.weighted(code.style.statements)(code):
         assignment(code)
 
 
-def statements(code: Code, most: int | None = None) -> None:
+def statements(code: RoutineWriter, most: int | None = None) -> None:
     """Write the statements of a block, at most ``most``."""
     choices = code.choices
     for _ in range(choices.between(1, most or code.size.statements)):
@@ -44,7 +44,7 @@ def statements(code: Code, most: int | None = None) -> None:
 # ------------------------------------------------------------------------- branches
 
 
-def branch(code: Code) -> bool:
+def branch(code: RoutineWriter) -> bool:
     """Write an IF."""
     code.spend()
     code.line(f"IF {truth(code, code.choices.between(1, 2))} THEN")
@@ -57,7 +57,7 @@ def branch(code: Code) -> bool:
     return code.line("ENDIF")
 
 
-def switch(code: Code) -> bool:
+def switch(code: RoutineWriter) -> bool:
     """Write a SWITCH over INT, CHAR or an enumeration [CTL-03, CTL-04]."""
     choices = code.choices
     type_ = choices.pick(_SELECTORS)
@@ -106,7 +106,7 @@ def _is_constant(variable: Variable) -> bool:
 # ------------------------------------------------------------------------- loops
 
 
-def _times(code: Code) -> int:
+def _times(code: RoutineWriter) -> int:
     """Return how often a loop is to run; 0 if the budget has no room for one."""
     room = code.left() // 12
     if code.loops >= 3 or code.level > _DEEPEST or room < 1:
@@ -114,13 +114,13 @@ def _times(code: Code) -> int:
     return code.choices.between(1, min(5, room))
 
 
-def _spare(code: Code) -> list[str]:
+def _spare(code: RoutineWriter) -> list[str]:
     """Return the counters that no enclosing loop uses."""
     used = {one.name for one in code.counters}
     return [name for name in code.passes if name not in used]
 
 
-def loop_for(code: Code) -> bool:
+def loop_for(code: RoutineWriter) -> bool:
     """Write a FOR, upwards or downwards, with or without constant limits [CTL-05]."""
     choices = code.choices
     times, spare = _times(code), _spare(code)
@@ -141,7 +141,7 @@ def loop_for(code: Code) -> bool:
     return True
 
 
-def _limits(code: Code, times: int) -> tuple[str, str, int, int, int, int]:
+def _limits(code: RoutineWriter, times: int) -> tuple[str, str, int, int, int, int]:
     """Return first and last value, step, least and greatest value, and number of passes."""
     choices = code.choices
     first, step = choices.pick((1, 1, 1, 0, -2)), choices.pick((1, 1, 1, 2, -1, -3))
@@ -160,7 +160,7 @@ def _limits(code: Code, times: int) -> tuple[str, str, int, int, int, int]:
     return begin, end, step, low, high, times
 
 
-def _counted(code: Code) -> tuple[str, int] | None:
+def _counted(code: RoutineWriter) -> tuple[str, int] | None:
     """Set an unused counter to zero; return its name and the number of passes."""
     times, spare = _times(code), _spare(code)
     if not times or not spare:
@@ -171,7 +171,7 @@ def _counted(code: Code) -> tuple[str, int] | None:
     return name, times
 
 
-def loop_while(code: Code) -> bool:
+def loop_while(code: RoutineWriter) -> bool:
     """Write a WHILE [CTL-01]."""
     found = _counted(code)
     if found is None:
@@ -187,7 +187,7 @@ def loop_while(code: Code) -> bool:
     return True
 
 
-def loop_repeat(code: Code) -> bool:
+def loop_repeat(code: RoutineWriter) -> bool:
     """Write a REPEAT [CTL-01]."""
     found = _counted(code)
     if found is None:
@@ -204,7 +204,7 @@ def loop_repeat(code: Code) -> bool:
     return code.line(f"UNTIL {condition}")
 
 
-def loop(code: Code) -> bool:
+def loop(code: RoutineWriter) -> bool:
     """Write a LOOP that is left by EXIT [CTL-01, CTL-02]."""
     found = _counted(code)
     if found is None:
@@ -218,18 +218,18 @@ def loop(code: Code) -> bool:
     return True
 
 
-def _both(code: Code, bound: str, word: str) -> str:
+def _both(code: RoutineWriter, bound: str, word: str) -> str:
     """Return the condition of a loop: its bound, sometimes joined with a random condition."""
     return f"({bound}) {word} ({truth(code, 1)})" if code.choices.chance(40) else bound
 
 
-def _count(code: Code, name: str, times: int, low: int = 1) -> None:
+def _count(code: RoutineWriter, name: str, times: int, low: int = 1) -> None:
     count(code, name, low, times)
     code.spend()
     code.set(name, f"{name}+1")
 
 
-def _leave(code: Code) -> None:
+def _leave(code: RoutineWriter) -> None:
     """Write an EXIT sometimes."""
     if code.choices.chance(12):
         code.spend(2)
@@ -239,7 +239,7 @@ def _leave(code: Code) -> None:
 # ------------------------------------------------------------------------- jumps
 
 
-def _forward_jump(code: Code) -> None:
+def _forward_jump(code: RoutineWriter) -> None:
     """Write a GOTO to a later label, in the same block or out of blocks [CTL-07]."""
     label = code.names.new("L")
     code.spend(2)
@@ -261,7 +261,7 @@ def _forward_jump(code: Code) -> None:
     code.line(f"{label}:")
 
 
-def backward_jump(code: Code) -> bool:
+def backward_jump(code: RoutineWriter) -> bool:
     """Write a GOTO to an earlier label, bounded by a counter."""
     found = _counted(code)
     if found is None:
@@ -276,7 +276,7 @@ def backward_jump(code: Code) -> bool:
         return code.guarded(f"{name}<{times}", f"GOTO {label}")
 
 
-def conditional_return(code: Code) -> bool:
+def conditional_return(code: RoutineWriter) -> bool:
     """Write a conditional RETURN [CTL-09]."""
     if code.loops and code.choices.chance(50):
         return False
@@ -286,7 +286,7 @@ def conditional_return(code: Code) -> bool:
     return True
 
 
-def returned(code: Code) -> bool:
+def returned(code: RoutineWriter) -> bool:
     """Write a RETURN, with a value in functions."""
     result = code.part.result
     if result is None:

@@ -12,8 +12,8 @@ from typing import Final
 
 from grammar.generation import literals
 from grammar.generation.choices import Weighted
-from grammar.generation.code import Code, Counter, ExpressionRule
 from grammar.generation.literals import POSES, TEXT, Path, predefined
+from grammar.generation.routine_writer import Counter, ExpressionRule, RoutineWriter
 from grammar.generation.scope import Parameter, Place, Places, Routine, Variable
 from grammar.generation.types import COLOUR, MODE
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Structure, Type
@@ -38,12 +38,12 @@ _ATOM: Final = re.compile(r"[\w.$]+(\[[\w.,$+]*\][\w.]*)?")
 # ------------------------------------------------------------------------- places and atoms
 
 
-def constant(code: Code, type_: Type, *, is_signed: bool = True) -> str:
+def constant(code: RoutineWriter, type_: Type, *, is_signed: bool = True) -> str:
     """Return a constant."""
     return literals.constant(code.choices, type_, is_signed=is_signed)
 
 
-def _index(code: Code, size: int) -> str:
+def _index(code: RoutineWriter, size: int) -> str:
     """Return an index for a dimension of ``size`` elements, nearly always a valid one."""
     choices = code.choices
     if code.risks() and choices.chance(30):
@@ -61,25 +61,25 @@ def _index(code: Code, size: int) -> str:
     return str(choices.between(1, size))
 
 
-def _written(code: Code, variable: Variable, path: Path) -> str:
+def _written(code: RoutineWriter, variable: Variable, path: Path) -> str:
     """Return a place as text, with random indices."""
     way = (_index(code, one) if isinstance(one, int) else one for one in path)
     return "".join([variable.name, *way])
 
 
-def target(code: Code, type_: Type, *, is_local: bool = True) -> str | None:
+def target(code: RoutineWriter, type_: Type, *, is_local: bool = True) -> str | None:
     """Return a place that can be assigned, or ``None`` if there is none."""
     return _one_of(code, code.scope.places(type_, is_written=True, is_local=is_local))
 
 
-def read(code: Code, type_: Type) -> str | None:
+def read(code: RoutineWriter, type_: Type) -> str | None:
     """Return a place that has a value, or ``None`` if there is none."""
     is_bare = code.risks()
     has_letters = type_ != CHAR or not code.choices.chance(92)
     return _one_of(code, code.scope.places(type_, is_bare=is_bare, has_letters=has_letters))
 
 
-def _one_of(code: Code, places: Places) -> str | None:
+def _one_of(code: RoutineWriter, places: Places) -> str | None:
     """Return a random place: any place, or a place of a random variable."""
     choices = code.choices
     if not places.holders:
@@ -91,7 +91,7 @@ def _one_of(code: Code, places: Places) -> str | None:
     return _written(code, variable, choices.pick(paths))
 
 
-def atom(code: Code, type_: Type) -> str:
+def atom(code: RoutineWriter, type_: Type) -> str:
     """Return a variable or a constant."""
     choices = code.choices
     if choices.chance(70):
@@ -103,12 +103,12 @@ def atom(code: Code, type_: Type) -> str:
     return constant(code, type_, is_signed=False)
 
 
-def constant_or_place(code: Code, type_: Type) -> str:
+def constant_or_place(code: RoutineWriter, type_: Type) -> str:
     """Return an assignable place, or a constant if there is none."""
     return target(code, type_) or constant(code, type_)
 
 
-def count(code: Code, name: str, low: int, high: int) -> None:
+def count(code: RoutineWriter, name: str, low: int, high: int) -> None:
     """Record that a variable is a counter within these limits here."""
     code.counters.append(Counter(name, low, high))
 
@@ -121,7 +121,7 @@ def call_text(name: str, arguments: Iterable[str]) -> str:
     return f"{name}({', '.join(arguments)})"
 
 
-def call_of(code: Code, routine: Routine) -> str:
+def call_of(code: RoutineWriter, routine: Routine) -> str:
     """Return a call; its cost is counted at the current place."""
     if not routine.deepest:
         code.spend(routine.cost)
@@ -135,11 +135,11 @@ def call_of(code: Code, routine: Routine) -> str:
     return call_text(routine.name, [str(bound), *given])
 
 
-def _arguments(code: Code, parameters: Sequence[Parameter]) -> list[str]:
+def _arguments(code: RoutineWriter, parameters: Sequence[Parameter]) -> list[str]:
     return [argument(code, one.type, is_out=one.is_out) for one in parameters]
 
 
-def argument(code: Code, type_: Type, *, is_out: bool) -> str:
+def argument(code: RoutineWriter, type_: Type, *, is_out: bool) -> str:
     """Return an argument; for a parameter :OUT nearly always a variable."""
     choices = code.choices
     if choices.chance(1):
@@ -155,7 +155,7 @@ def argument(code: Code, type_: Type, *, is_out: bool) -> str:
     return expression(code, choices.pick((type_, type_, type_, type_, INT, REAL)), 1)
 
 
-def array(code: Code, type_: Array) -> str:
+def array(code: RoutineWriter, type_: Array) -> str:
     """Return a whole array, or part of one with more dimensions; empty if there is none."""
     rank, choices = len(type_.sizes), code.choices
     found = []
@@ -166,7 +166,7 @@ def array(code: Code, type_: Array) -> str:
     return choices.pick(found) if found else ""
 
 
-def _row(code: Code, place: Place, given: int) -> str:
+def _row(code: RoutineWriter, place: Place, given: int) -> str:
     """Return an array with its first ``given`` indices written [TYP-11]."""
     assert isinstance(place.type, Array)
     sizes = [size or 2 for size in place.type.sizes]
@@ -175,7 +175,7 @@ def _row(code: Code, place: Place, given: int) -> str:
     return f"{_written(code, place.variable, place.path)}[{first}{commas}]"
 
 
-def text(code: Code) -> str:
+def text(code: RoutineWriter) -> str:
     """Return a text: a variable, a row of a table, or a literal."""
     found = array(code, TEXT) if code.choices.chance(60) else ""
     return found or constant(code, TEXT)
@@ -184,7 +184,7 @@ def text(code: Code) -> str:
 # ------------------------------------------------------------------------- expressions
 
 
-def expression(code: Code, type_: Type, depth: int) -> str:
+def expression(code: RoutineWriter, type_: Type, depth: int) -> str:
     """Return an expression of a type; ``depth`` is how deep it may nest."""
     if depth <= 0:
         return atom(code, type_)
@@ -201,18 +201,18 @@ def expression(code: Code, type_: Type, depth: int) -> str:
     return atom(code, type_)
 
 
-def truth(code: Code, depth: int = 2) -> str:
+def truth(code: RoutineWriter, depth: int = 2) -> str:
     """Return a condition."""
     return expression(code, BOOL, depth)
 
 
-def operand(code: Code, type_: Type, depth: int) -> str:
+def operand(code: RoutineWriter, type_: Type, depth: int) -> str:
     """Return an expression as an operand: in parentheses if it is not an atom."""
     found = expression(code, type_, depth)
     return found if _ATOM.fullmatch(found) else f"({found})"
 
 
-def factor(code: Code, type_: Type) -> str:
+def factor(code: RoutineWriter, type_: Type) -> str:
     """Return a small number, as the operand of a product."""
     choices = code.choices
     small = ("2", "3", "7", "-1", "0") if type_ == INT else ("0.5", "1.1", "-2.0")
@@ -220,7 +220,7 @@ def factor(code: Code, type_: Type) -> str:
     return f"({found})" if found.startswith("-") else found
 
 
-def divisor(code: Code, type_: Type) -> str:
+def divisor(code: RoutineWriter, type_: Type) -> str:
     """Return a number that is seldom zero."""
     choices = code.choices
     if code.risks():
@@ -233,7 +233,7 @@ def divisor(code: Code, type_: Type) -> str:
 def chain(type_: Type) -> ExpressionRule:
     """Return a rule for sums and products without parentheses, to test precedence [ARI-05]."""
 
-    def rule(code: Code, depth: int) -> str:
+    def rule(code: RoutineWriter, depth: int) -> str:
         choices = code.choices
         found = atom(code, type_)
         for _ in range(choices.between(1, depth + 1)):
@@ -250,7 +250,7 @@ def chain(type_: Type) -> ExpressionRule:
     return rule
 
 
-def letter(code: Code, depth: int) -> str:
+def letter(code: RoutineWriter, depth: int) -> str:
     """Return a CHAR, sometimes in parentheses; no operator has a CHAR as its result."""
     found = atom(code, CHAR)
     return f"({found})" if depth > 1 and code.choices.chance(10) else found
@@ -259,7 +259,7 @@ def letter(code: Code, depth: int) -> str:
 def pose(type_: Structure) -> ExpressionRule:
     """Return a rule for frames joined by the operator ``:``; the last gives the type [ARI-08]."""
 
-    def rule(code: Code, depth: int) -> str:
+    def rule(code: RoutineWriter, depth: int) -> str:
         choices = code.choices
         if choices.chance(45):
             return atom(code, type_)
@@ -269,7 +269,7 @@ def pose(type_: Structure) -> ExpressionRule:
     return rule
 
 
-def _frame(code: Code, type_: Structure) -> str:
+def _frame(code: RoutineWriter, type_: Structure) -> str:
     """Return a variable, or an aggregate that names its type, which would be unknown otherwise."""
     choices = code.choices
     found = read(code, type_)
@@ -281,12 +281,12 @@ def _frame(code: Code, type_: Structure) -> str:
 # ------------------------------------------------------------------------- relations
 
 
-def relation(code: Code, depth: int) -> str:
+def relation(code: RoutineWriter, depth: int) -> str:
     """Return a comparison by one of the rules [ARI-10]."""
     return code.choices.weighted(code.style.relations)(code, depth)
 
 
-def near_comparison(code: Code, _depth: int) -> str:
+def near_comparison(code: RoutineWriter, _depth: int) -> str:
     """Return a comparison of numbers that are equal or nearly equal."""
     choices = code.choices
     left = atom(code, choices.pick((INT, REAL)))
@@ -294,13 +294,13 @@ def near_comparison(code: Code, _depth: int) -> str:
     return f"{left} {choices.pick(_ORDERS)} {choices.pick(others)}"
 
 
-def letter_comparison(code: Code, _depth: int) -> str:
+def letter_comparison(code: RoutineWriter, _depth: int) -> str:
     """Return a comparison of CHAR values, sometimes with an empty text."""
     right = '""' if code.risks() else atom(code, CHAR)
     return f"{atom(code, CHAR)} {code.choices.pick(_ORDERS)} {right}"
 
 
-def constant_comparison(code: Code, depth: int) -> str:
+def constant_comparison(code: RoutineWriter, depth: int) -> str:
     """Return a comparison of enumeration values, also predefined ones."""
     choices, style = code.choices, code.style
     type_ = choices.weighted(_ENUMERATIONS)

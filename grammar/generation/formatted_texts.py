@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from grammar.generation.code import Code
 from grammar.generation.expressions import array, constant_or_place, expression, read, target, text
 from grammar.generation.literals import TEXT
+from grammar.generation.routine_writer import RoutineWriter
 from grammar.generation.types import COLOUR, STATE
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
@@ -39,14 +39,14 @@ _PRECISIONS: Final = ("", "", "", ".0", ".1", ".9", ".2047", ".")
 _LETTERS: Final = "diuxefgcsXq"
 
 
-def _specification(code: Code, width_only: bool = False) -> str:
+def _specification(code: RoutineWriter, width_only: bool = False) -> str:
     """Return a random format specification, rarely an invalid one; it need not fit its value."""
     pick = code.choices.pick
     flags, precision = ("", "") if width_only else (pick(_FLAGS), pick(_PRECISIONS))
     return f"%{flags}{pick(_WIDTHS)}{precision}{pick(_LETTERS)}"
 
 
-def format_text(code: Code) -> bool:
+def format_text(code: RoutineWriter) -> bool:
     """Write an SWRITE; sometimes a format does not fit its value."""
     place, state = array(code, TEXT), target(code, STATE)
     offset = target(code, INT)
@@ -66,7 +66,7 @@ def format_text(code: Code) -> bool:
     return code.line(f'SWRITE({place}, {state}, {offset}, "{pattern}"{values})')
 
 
-def scan_text(code: Code) -> bool:
+def scan_text(code: RoutineWriter) -> bool:
     """Write an SREAD."""
     state, offset = target(code, STATE), target(code, INT)
     if state is None or offset is None:

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from typing import Final
 
 from grammar.generation.choices import Weighted
-from grammar.generation.code import Code, ExpressionRule
 from grammar.generation.expressions import constant_or_place, expression, text
 from grammar.generation.literals import AXIS_TYPES, POSES, predefined, structure
 from grammar.generation.patterns import pattern, patterns
+from grammar.generation.routine_writer import ExpressionRule, RoutineWriter
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
 _READERS: Final[tuple[tuple[str, Type], ...]] = (
@@ -30,7 +30,7 @@ _READABLE: Final[Mapping[Type, tuple[str, ...]]] = {
 }
 
 
-def _parse(code: Code, depth: int) -> str:
+def _parse(code: RoutineWriter, depth: int) -> str:
     """Return a call of STRTO…; some of the texts can be converted, others cannot."""
     name, type_ = code.choices.pick(_READERS)
     if name == "STRTOSTRING":
@@ -39,7 +39,7 @@ def _parse(code: Code, depth: int) -> str:
     return f"{name}({given}, {constant_or_place(code, type_)})"
 
 
-def _inverse(code: Code, depth: int) -> str:
+def _inverse(code: RoutineWriter, depth: int) -> str:
     return f"INV_POS({expression(code, code.choices.pick(POSES), min(depth - 1, 1))})"
 
 
@@ -47,7 +47,7 @@ def _risky(right: str, *wrong: str) -> ExpressionRule:
     """Return a rule for ``right``, or for one of ``wrong`` where a fault is to be provoked."""
     usual, others = pattern(right), [pattern(one) for one in wrong]
 
-    def rule(code: Code, depth: int) -> str:
+    def rule(code: RoutineWriter, depth: int) -> str:
         return (code.choices.pick(others) if code.risks() else usual)(code, depth)
 
     return rule

@@ -1,6 +1,6 @@
 """Motions, spline blocks, triggers, interrupts.
 
-As in `statements`, a rule writes into a `Code` and returns whether it could.
+As in `statements`, a rule writes into a `RoutineWriter` and returns whether it could.
 """
 
 from __future__ import annotations
@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.generation.choices import Weighted
-from grammar.generation.code import Code
 from grammar.generation.expressions import (
     atom,
     call_text,
@@ -20,6 +19,7 @@ from grammar.generation.expressions import (
 )
 from grammar.generation.literals import AXIS_TYPES, POSES
 from grammar.generation.patterns import output, pattern
+from grammar.generation.routine_writer import RoutineWriter
 from grammar.generation.scope import Routine
 from grammar.motion_kinds import PTP_SPLINE_SEGMENTS, SPLINE_SEGMENTS
 from grammar.semantics.types import INT, REAL
@@ -41,7 +41,7 @@ AXES_OF_ROBOT: Final = "A1 0.0,A2 -90.0,A3 90.0,A4 0.0,A5 {0},A6 0.0"
 # ------------------------------------------------------------------------- single motions
 
 
-def _goal(code: Code, kind: str) -> str:
+def _goal(code: RoutineWriter, kind: str) -> str:
     """Return a motion target: an aggregate, a variable, composed frames, or a function call."""
     choices = code.choices
     is_axis = "PTP" in kind
@@ -56,7 +56,7 @@ def _goal(code: Code, kind: str) -> str:
     return f"({found})" if choices.chance(10) else found
 
 
-def motion_text(code: Code, kind: str) -> str:
+def motion_text(code: RoutineWriter, kind: str) -> str:
     """Return a motion of a kind, without its blending criterion."""
     choices = code.choices
     text = f"{kind} {_goal(code, kind)}"
@@ -67,7 +67,7 @@ def motion_text(code: Code, kind: str) -> str:
     return text
 
 
-def motion(code: Code) -> bool:
+def motion(code: RoutineWriter) -> bool:
     """Write a PTP, LIN, CIRC, a relative one, or a motion of asynchronous axes."""
     choices = code.choices
     code.spend()
@@ -80,7 +80,7 @@ def motion(code: Code) -> bool:
     return code.line(text)
 
 
-def spline_motion(code: Code) -> bool:
+def spline_motion(code: RoutineWriter) -> bool:
     """Write a single SPTP, SLIN or SCIRC; not in interrupt routines [SPL-11]."""
     if code.part.is_action:
         return False
@@ -89,11 +89,11 @@ def spline_motion(code: Code) -> bool:
     return code.line(_segment(code, kind) + code.choices.pick(("", "", " C_SPL")))
 
 
-def _segment(code: Code, kind: str) -> str:
+def _segment(code: RoutineWriter, kind: str) -> str:
     return motion_text(code, kind) + _with(code, 30)
 
 
-def _with(code: Code, percent: int) -> str:
+def _with(code: RoutineWriter, percent: int) -> str:
     """Return a WITH clause: values for one motion only [SPL-08]."""
     choices = code.choices
     if not choices.chance(percent):
@@ -114,7 +114,7 @@ _VALUES: Final = tuple(
 # ------------------------------------------------------------------------- spline blocks
 
 
-def spline_block(code: Code) -> bool:
+def spline_block(code: RoutineWriter) -> bool:
     """Write a SPLINE or PTP_SPLINE [SPL-01]."""
     if code.part.is_action:
         return False
@@ -138,7 +138,7 @@ def spline_block(code: Code) -> bool:
     return code.line(f"ENDSPLINE{choices.pick(('', '', ' C_SPL'))}")
 
 
-def _item(code: Code, edges: list[str], *, is_axis: bool, is_timed: bool) -> None:
+def _item(code: RoutineWriter, edges: list[str], *, is_axis: bool, is_timed: bool) -> None:
     """Write a segment of a spline block, sometimes after a trigger or the like.
 
     ``edges`` are the edges of the CONST_VEL range that have not been written yet.
@@ -160,15 +160,15 @@ def _item(code: Code, edges: list[str], *, is_axis: bool, is_timed: bool) -> Non
 # ------------------------------------------------------------------------- triggers
 
 
-def _distance(code: Code) -> str:
+def _distance(code: RoutineWriter) -> str:
     return code.choices.pick(("0", "10.0", "-5", atom(code, REAL)))
 
 
-def _onstart(code: Code) -> str:
+def _onstart(code: RoutineWriter) -> str:
     return code.choices.pick(("", " ONSTART"))
 
 
-def _triggered(code: Code) -> str:
+def _triggered(code: RoutineWriter) -> str:
     """Return the end of a trigger: delay, action, priority."""
     choices = code.choices
     delay = choices.pick(("0", "20", "-10.5", f"{operand(code, INT, 1)} B_AND 255"))
@@ -190,7 +190,7 @@ def _triggered(code: Code) -> str:
     return f"DELAY={delay} DO {action}"
 
 
-def action_call(code: Code, routine: Routine) -> str:
+def action_call(code: RoutineWriter, routine: Routine) -> str:
     """Return a call for a later time, when the local variables of this routine may be gone."""
     given = [
         constant(code, one.type)
@@ -201,7 +201,7 @@ def action_call(code: Code, routine: Routine) -> str:
     return call_text(routine.name, given)
 
 
-def trigger(code: Code) -> bool:
+def trigger(code: RoutineWriter) -> bool:
     """Write a TRIGGER and its motion."""
     if code.part.is_action:
         return False
@@ -218,7 +218,7 @@ def trigger(code: Code) -> bool:
 # ------------------------------------------------------------------------- interrupts
 
 
-def interrupt(code: Code) -> bool:
+def interrupt(code: RoutineWriter) -> bool:
     """Write an INTERRUPT DECL, ON, OFF, ENABLE or DISABLE [INT-01, INT-07]."""
     choices = code.choices
     code.spend()
@@ -233,7 +233,7 @@ def interrupt(code: Code) -> bool:
     return code.line(f"INTERRUPT {choices.pick(('ON', 'OFF', 'ENABLE', 'DISABLE'))}")
 
 
-def _declaration(code: Code) -> bool:
+def _declaration(code: RoutineWriter) -> bool:
     choices = code.choices
     actions = code.scope.actions()
     number, word = choices.pick(_NUMBERS), ""
@@ -254,7 +254,7 @@ def _declaration(code: Code) -> bool:
 _EVENTS: Final = tuple(map(pattern, ("$IN[<1-16>]", "$FLAG[<1-16>]==TRUE", "<BOOL>")))
 
 
-def brake(code: Code) -> bool:
+def brake(code: RoutineWriter) -> bool:
     """Write a BRAKE or RESUME, in interrupt routines only."""
     if not code.part.is_action:
         return False

@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from typing import Final
 
 from grammar.generation.choices import Weighted
-from grammar.generation.code import Code, ExpressionRule, StatementRule
 from grammar.generation.expressions import (
     array,
     atom,
@@ -27,6 +26,7 @@ from grammar.generation.expressions import (
     text,
 )
 from grammar.generation.literals import TEXT, predefined
+from grammar.generation.routine_writer import ExpressionRule, RoutineWriter, StatementRule
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
 _PLACE: Final = re.compile(r"<[^<>]+>")
@@ -51,7 +51,7 @@ def pattern(text: str) -> ExpressionRule:
         end = found.end()
     pieces.append(text[end:])
 
-    def rule(code: Code, depth: int) -> str:
+    def rule(code: RoutineWriter, depth: int) -> str:
         return "".join(one if isinstance(one, str) else one(code, depth) for one in pieces)
 
     return rule
@@ -61,14 +61,14 @@ def line(*texts: str, cost: int = 1) -> StatementRule:
     """Return the rule that writes one of the patterns as a statement."""
     rules = [pattern(text) for text in texts]
 
-    def statement(code: Code) -> bool:
+    def statement(code: RoutineWriter) -> bool:
         code.spend(cost)
         return code.line(code.choices.pick(rules)(code, _DEPTH))
 
     return statement
 
 
-def output(code: Code, _depth: int = 0) -> str:
+def output(code: RoutineWriter, _depth: int = 0) -> str:
     """Return an output that a program may set."""
     return f"$OUT[{code.choices.between(1, 16)}]"
 
@@ -111,11 +111,11 @@ def _of_type(kind: str, type_: Type) -> ExpressionRule:
     raise ValueError(f"nothing fills <{kind} {type_}>")
 
 
-def _lasting(code: Code, _depth: int) -> str:
+def _lasting(code: RoutineWriter, _depth: int) -> str:
     return code.choices.pick(("$IN[1]", "$FLAG[2]", "$OUT[3]", "($TIMER[1]>100)"))
 
 
-def _name(code: Code, _depth: int) -> str:
+def _name(code: RoutineWriter, _depth: int) -> str:
     names = [one.name for one in code.scope.variables()]
     return code.choices.pick([*names, "NOWHERE", "$VEL.CP"])
 

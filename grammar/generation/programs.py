@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from grammar.generation.choices import Choices, SeededChoices, Weighted
-from grammar.generation.code import Code, Names, Part, Size
 from grammar.generation.control_flow import returned, statements
 from grammar.generation.literals import AXIS_TYPES, POSES, TEXT, constant
+from grammar.generation.routine_writer import Names, Part, RoutineWriter, Size
 from grammar.generation.routines import (
     DEPTH,
     PLAIN,
@@ -264,8 +264,8 @@ class _Programs:
         scope.add_routine(routine)
         return routine_text(code, routine, is_global=is_library)
 
-    def _code(self, scope: Scope, budget: int, part: Part) -> Code:
-        return Code(
+    def _code(self, scope: Scope, budget: int, part: Part) -> RoutineWriter:
+        return RoutineWriter(
             self.choices,
             STYLE,
             self.names,
@@ -276,7 +276,7 @@ class _Programs:
             part=part,
         )
 
-    def _declare(self, code: Code, given: Sequence[Parameter]) -> list[Variable]:
+    def _declare(self, code: RoutineWriter, given: Sequence[Parameter]) -> list[Variable]:
         """Declare the parameters and local variables, and return the local variables.
 
         None of them has a value yet.
@@ -299,7 +299,7 @@ class _Programs:
 
         return declare(code, wanted, name)
 
-    def _begin(self, code: Code, variables: Sequence[Variable], most: int) -> None:
+    def _begin(self, code: RoutineWriter, variables: Sequence[Variable], most: int) -> None:
         """Write the initial values of local variables, at most ``most`` parts of each."""
         code.line(f"{code.passes[0]}=0")
         code.spend()

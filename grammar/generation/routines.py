@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.generation.choices import Choices
-from grammar.generation.code import Code, Names
 from grammar.generation.literals import (
     AXIS_TYPES,
     POSES,
@@ -17,6 +16,7 @@ from grammar.generation.literals import (
     initialisation,
     type_name,
 )
+from grammar.generation.routine_writer import Names, RoutineWriter
 from grammar.generation.scope import Parameter, Routine, Scope, Variable
 from grammar.generation.types import COLOUR, POINT
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Enumeration, Structure, Type
@@ -108,7 +108,7 @@ def _parameter(choices: Choices, has_arrays: bool) -> Parameter:
     return Parameter("", type_, is_out, not is_out or choices.chance(60))
 
 
-def declare_parameters(code: Code, given: Sequence[Parameter]) -> None:
+def declare_parameters(code: RoutineWriter, given: Sequence[Parameter]) -> None:
     """Declare the parameters; the one that limits recursion is not writable."""
     for one in given:
         first = _decl(code.choices, one.type)
@@ -116,7 +116,9 @@ def declare_parameters(code: Code, given: Sequence[Parameter]) -> None:
         code.scope.add(Variable(one.name, one.type, is_writable=one.name != DEPTH))
 
 
-def declare(code: Code, types: Sequence[Type], new_name: Callable[[], str]) -> list[Variable]:
+def declare(
+    code: RoutineWriter, types: Sequence[Type], new_name: Callable[[], str]
+) -> list[Variable]:
     """Declare local variables and return them; they have no value yet."""
     found: list[Variable] = []
     for type_ in types:
@@ -128,7 +130,7 @@ def declare(code: Code, types: Sequence[Type], new_name: Callable[[], str]) -> l
     return found
 
 
-def begin(code: Code, variables: Sequence[Variable], most: int) -> None:
+def begin(code: RoutineWriter, variables: Sequence[Variable], most: int) -> None:
     """Write initial values of local variables, at most ``most`` parts of each."""
     for variable in variables:
         if variable.has_value:
@@ -138,7 +140,7 @@ def begin(code: Code, variables: Sequence[Variable], most: int) -> None:
                 code.set(target, value)
 
 
-def routine_text(code: Code, routine: Routine, *, is_global: bool = False) -> list[str]:
+def routine_text(code: RoutineWriter, routine: Routine, *, is_global: bool = False) -> list[str]:
     """Return the lines of a routine with its first and last one."""
     formal = []
     for one in routine.parameters:

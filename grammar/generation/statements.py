@@ -1,7 +1,7 @@
 """Simple statements: assignments, calls, inputs and outputs.
 
-A rule writes a statement into a `Code` and returns ``True``. If the scope lacks what the statement
-needs, it writes nothing and returns ``False``.
+A rule writes a statement with a `RoutineWriter` and returns ``True``. If the scope lacks what the
+statement needs, it writes nothing and returns ``False``.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.generation.choices import Weighted
-from grammar.generation.code import Code
 from grammar.generation.expressions import array, call_of, constant, expression, read, target, text
 from grammar.generation.literals import AXIS_TYPES, POSES, TEXT
+from grammar.generation.routine_writer import RoutineWriter
 from grammar.generation.types import COLOUR, MODE, POINT, RECORD, STATE
 from grammar.generation.values import assigned_value
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
@@ -24,7 +24,7 @@ _ASSIGNED: Final = Weighted[Type](
 # ------------------------------------------------------------------------- assignments, calls
 
 
-def assignment(code: Code) -> bool:
+def assignment(code: RoutineWriter) -> bool:
     """Write an assignment to a variable or a part of one."""
     code.spend()
     for _ in range(4):
@@ -35,7 +35,7 @@ def assignment(code: Code) -> bool:
     return code.set("$FLAG[1]", "TRUE")
 
 
-def assign_missing(code: Code) -> bool:
+def assign_missing(code: RoutineWriter) -> bool:
     """Write an assignment with an index that is often invalid or a value that is often missing."""
     if not code.risk:
         return False
@@ -51,7 +51,7 @@ def assign_missing(code: Code) -> bool:
     return code.set(max(drawn, key=len), value)
 
 
-def assign_whole(code: Code) -> bool:
+def assign_whole(code: RoutineWriter) -> bool:
     """Write an assignment of a structure or a whole array."""
     choices = code.choices
     if choices.chance(25):
@@ -77,7 +77,7 @@ def assign_whole(code: Code) -> bool:
 _RANKS: Final = Weighted((3, 1), (1, 2))
 
 
-def call(code: Code) -> bool:
+def call(code: RoutineWriter) -> bool:
     """Write a call of a procedure or, for its effect, of a function."""
     found = code.scope.callable(code.choices.weighted(_CALLED), code.left() - 2)
     if not found:
@@ -89,7 +89,7 @@ def call(code: Code) -> bool:
 _CALLED: Final = Weighted[Type | None]((6, None), (1, INT), (1, BOOL))
 
 
-def proceed(code: Code) -> bool:
+def proceed(code: RoutineWriter) -> bool:
     """Write ON_ERROR_PROCEED, a risky statement, and a read access to $ERR [TYP-13]."""
     found = target(code, INT)
     if found is None:
@@ -105,7 +105,7 @@ def proceed(code: Code) -> bool:
 # ------------------------------------------------------------------------- the controller
 
 
-def set_base(code: Code) -> bool:
+def set_base(code: RoutineWriter) -> bool:
     """Write an assignment to $BASE or $TOOL, sometimes from a type with more components."""
     other = read(code, POSES[1]) if code.choices.chance(25) else None
     value = other or expression(code, POSES[0], 2)
@@ -113,7 +113,7 @@ def set_base(code: Code) -> bool:
     return code.set(code.choices.pick(("$BASE", "$TOOL")), value)
 
 
-def set_advance(code: Code) -> bool:
+def set_advance(code: RoutineWriter) -> bool:
     """Write an assignment to $ADVANCE; not in interrupt routines."""
     if code.part.is_action:
         return False
@@ -121,7 +121,7 @@ def set_advance(code: Code) -> bool:
     return code.set("$ADVANCE", str(code.choices.between(0, 5)))
 
 
-def channel(code: Code) -> bool:
+def channel(code: RoutineWriter) -> bool:
     """Write the opening, use and closing of a channel [FCT-08]."""
     state, handle = target(code, STATE), target(code, INT)
     if state is None or handle is None:
@@ -132,7 +132,7 @@ def channel(code: Code) -> bool:
     return code.line(f"CCLOSE({handle}, {state})")
 
 
-def input_signal(code: Code) -> bool:
+def input_signal(code: RoutineWriter) -> bool:
     """Write a cyclic ANIN or DIGIN into a global variable [IOT-04, IOT-09]."""
     found = target(code, REAL, is_local=False)
     if found is None:
@@ -146,7 +146,7 @@ def input_signal(code: Code) -> bool:
 # ------------------------------------------------------------------------- texts
 
 
-def assign_text(code: Code) -> bool:
+def assign_text(code: RoutineWriter) -> bool:
     """Write an assignment of a whole text [TYP-11]."""
     place = array(code, TEXT)
     if not place:

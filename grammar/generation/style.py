@@ -6,7 +6,6 @@ from typing import Final
 
 from grammar.generation import control_flow, motions, statements
 from grammar.generation.choices import Weighted
-from grammar.generation.code import Code, StatementRule, Style
 from grammar.generation.expressions import (
     chain,
     constant,
@@ -20,6 +19,7 @@ from grammar.generation.formatted_texts import format_text, scan_text
 from grammar.generation.functions import CONTROLLER_VALUES
 from grammar.generation.literals import POSES
 from grammar.generation.patterns import line, patterns
+from grammar.generation.routine_writer import RoutineWriter, StatementRule, Style
 from grammar.generation.unstated_effects import (
     count_beyond_range,
     order_of_evaluation,
@@ -30,7 +30,7 @@ from grammar.semantics.types import BOOL, CHAR, INT, REAL
 _SWITCHED: Final = line("<$FLAG|$OUT>[<1-16>]=<BOOL>")
 
 
-def _course(code: Code) -> bool:
+def _course(code: RoutineWriter) -> bool:
     """Write a sequence of motions as real programs have it: tool, base, a full PTP, then more.
 
     Most rules about motions only apply to such a sequence.

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from grammar.generation.choices import SeededChoices
-from grammar.generation.code import Size
 from grammar.generation.programs import generate
+from grammar.generation.routine_writer import Size
 from support.files.atomic_write import naming
 from support.parallel.progress import Progress, no_progress
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-from grammar.generation.code import Code
 from grammar.generation.expressions import array, constant, read, target
 from grammar.generation.literals import TEXT
+from grammar.generation.routine_writer import RoutineWriter
 from grammar.generation.types import STATE
 from grammar.semantics.types import INT
 
@@ -19,7 +19,7 @@ _BEYOND: Final = (
 )
 
 
-def order_of_evaluation(code: Code) -> bool:
+def order_of_evaluation(code: RoutineWriter) -> bool:
     """A sum, an index or arguments whose parts change what the others read."""
     place, text = target(code, INT), array(code, TEXT)
     if place is None or not text:
@@ -51,7 +51,7 @@ def order_of_evaluation(code: Code) -> bool:
     return code.set(f"{name}[{','.join(indices)}]{rest.partition(']')[2]}", drawn[-1])
 
 
-def count_beyond_range(code: Code) -> bool:
+def count_beyond_range(code: RoutineWriter) -> bool:
     """FOR to the greatest or least INT, left after a few passes."""
     used = {one.name for one in code.counters}
     spare = [name for name in code.passes if name not in used]
@@ -72,7 +72,7 @@ def count_beyond_range(code: Code) -> bool:
     return place is None or code.set(place, f"{counter} B_EXOR {passes}")
 
 
-def own_text(code: Code) -> bool:
+def own_text(code: RoutineWriter) -> bool:
     """A text that is read and written by the same statement."""
     text, state, offset = array(code, TEXT), target(code, STATE), target(code, INT)
     if not text or state is None or offset is None:

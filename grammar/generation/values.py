@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from grammar.generation.code import Code
 from grammar.generation.expressions import atom, expression, operand, read
+from grammar.generation.routine_writer import RoutineWriter
 from grammar.semantics.types import CHAR, INT, REAL, Type
 
 #: Expressions at and beyond the limits of INT and REAL.
@@ -15,7 +15,7 @@ _TOO_LARGE: Final = (
 )
 
 
-def assigned_value(code: Code, type_: Type) -> str:
+def assigned_value(code: RoutineWriter, type_: Type) -> str:
     """Return a value for a variable of a type, sometimes one that has to be converted."""
     choices = code.choices
     depth = choices.between(1, code.size.depth)
@@ -36,7 +36,7 @@ def assigned_value(code: Code, type_: Type) -> str:
     return expression(code, type_, depth)
 
 
-def _integer(code: Code, depth: int) -> str:
+def _integer(code: RoutineWriter, depth: int) -> str:
     choices = code.choices
     match choices.below(12):
         case 0 | 1 | 2 | 3:

@@ -14,8 +14,8 @@ from conformance.differential.construct_coverage import language
 from conformance.differential.divergence import prepared
 from conformance.differential.runs import EXECUTORS, trace_of
 from grammar.generation.choices import Choices
-from grammar.generation.code import Size
 from grammar.generation.programs import Sample, generate, seeded
+from grammar.generation.routine_writer import Size
 from interp.native import AVAILABLE
 from interp.program.load import Limits
 from interp.values.faults import LinkError

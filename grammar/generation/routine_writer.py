@@ -1,4 +1,4 @@
-"""A routine under construction, and the tables from which its rules choose.
+"""The writer of a random routine: its lines, what they cost, and the tables of rules for them.
 
 The rules in `expressions`, `statements`, `control_flow` and `motions` call one another through
 these tables, which `style` fills.
@@ -17,9 +17,9 @@ from grammar.semantics.types import Type
 
 _INDENT: Final = "  "
 #: Returns an expression; the number is the greatest depth of nesting.
-ExpressionRule = Callable[["Code", int], str]
+ExpressionRule = Callable[["RoutineWriter", int], str]
 #: Writes a statement; returns ``False`` and writes nothing if the scope lacks what it needs.
-StatementRule = Callable[["Code"], bool]
+StatementRule = Callable[["RoutineWriter"], bool]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ class Part:
     result: Type | None = None
 
 
-class Code:
+class RoutineWriter:
     """A routine under construction.
 
     ``budget`` is the number of statements it may execute, ``times`` how often the current place is
