@@ -30,8 +30,9 @@ _DRIVES = {"r1", "steu"}
 _CONFIG = "$config.dat"
 #: Calls, and what only looks like one.
 _CALL = re.compile(
-    r";.*|^[ \t]*(?:GLOBAL[ \t]+)?DEF(?:FCT)?\b.*|\b([A-Z_]\w*)[ \t]*\(",
-    re.IGNORECASE | re.ASCII | re.MULTILINE,
+    r";[^\r\n]*|(?:\A|(?<=[\r\n]))[ \t]*(?:GLOBAL[ \t]+)?DEF(?:FCT)?\b[^\r\n]*"
+    r"|\b([A-Z_]\w*)[ \t]*\(",
+    re.IGNORECASE | re.ASCII,
 )
 
 _Folder = tuple[str, ...]

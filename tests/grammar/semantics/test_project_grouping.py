@@ -57,3 +57,16 @@ def test_projects(name: str, tmp_path: Path) -> None:
         file.write_text(f"DEF {file.stem} ( )\n{text}END\nDEF lost ( )\nEND\n", "utf-8")
     every = [path for some in projects for path in some]
     assert sorted(map(list, projects)) == sorted(_projects(tmp_path, every))
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_calls_are_found_with_any_line_ends(end: str, tmp_path: Path) -> None:
+    """A comment ends with its line, and a call behind it makes two folders one project."""
+    for path, lines in (
+        ("a/main.src", ["; main", "DEF main()", "grip()", "END"]),
+        ("b/lib/grip.src", ["DEF grip()", "END", ""]),
+    ):
+        (file := tmp_path / path).parent.mkdir(parents=True)
+        file.write_text(end.join(lines), "utf-8", newline="")
+    every = ["a/main.src", "b/lib/grip.src"]
+    assert [every] == _projects(tmp_path, every)
