@@ -62,12 +62,8 @@ def initial(to: Type, value: Type) -> Verdict:
 
 
 def _refused(to: Type, value: Type) -> Verdict:
-    return Verdict(False, ("ARI-11",), misfit(to, value), 1446, is_misfit=True)
-
-
-def misfit(to: Type, value: Type, where: str = "here") -> str:
-    """Return the sentence about a value whose type differs from what its place needs."""
-    return f"{to} is expected {where}, and this is {value}"
+    reason = f"{to} is expected here, and this is {value}"
+    return Verdict(False, ("ARI-11",), reason, 1446, is_misfit=True)
 
 
 def _to_scalar(to: Scalar, value: Type) -> Verdict:

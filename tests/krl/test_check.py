@@ -55,11 +55,12 @@ def test_text_has_a_caret_and_a_fix(capsys: pytest.CaptureFixture[str]) -> None:
     assert "1 file checked: 1 error\n" == err
 
 
-JOINED = """\
-A.src:4:1: note KRL701: 4 names are in no file at hand: FAR, OUTER, LOST, …; --verbose tells each
-"""
+JOINED = (
+    "A.src:4:1: note KRL701: 4 names are declared in no file at hand: "
+    "FAR, OUTER, LOST, …; --verbose tells each\n"
+)
 EACH = "".join(
-    f"A.src:{line}:1: note KRL701: the routine {name} is in no file at hand; used once\n"
+    f"A.src:{line}:1: note KRL701: the routine {name} is declared in no file at hand; used once\n"
     for line, name in enumerate(("FAR", "OUTER", "LOST", "GONE"), 4)
 )
 
@@ -76,7 +77,7 @@ def test_errors_come_last_and_names_of_missing_files_are_one_note(
     out, err = capsys.readouterr()
     assert (
         f"{notes}"
-        "B.src:2:1: note KRL701: the routine AWAY is in no file at hand; used once\n"
+        "B.src:2:1: note KRL701: the routine AWAY is declared in no file at hand; used once\n"
         "A.src:3:1: warning KRL401: EXIT outside a loop\n"
         'A.src:8:1: error KRL001: no line begins with "="\n'
         == "".join(f"{line}\n" for line in out.splitlines() if ".src:" in line)

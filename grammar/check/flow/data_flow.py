@@ -469,5 +469,5 @@ def _waiting(context: Context, node: ast.WaitFor) -> Iterator[Diagnostic]:
     elif constant(context, node.condition) is False:
         is_on_purpose = isinstance(without_parentheses(node.condition), ast.BoolLiteral)
         severity: Severity = "note" if is_on_purpose else "warning"
-        message = "this condition is never fulfilled"
+        message = "this condition is never true"
         yield context.finding("waits-for-ever", node.condition, message, severity=severity)

@@ -132,7 +132,9 @@ class SummaryCollector:
             to = *address, index
             argument = node.arguments[index] if index < len(node.arguments) else None
             if argument is None:
-                message = f"{parameter.name} is left out, and {address[1]} reads it"
+                message = (
+                    f"the argument for {parameter.name} is left out, and {address[1]} reads it"
+                )
                 reason = f"{address[0].rpartition('/')[2]} does not ask VARSTATE first"
                 region = Region.of(context.source, node.span)
                 holds = ((READS, *to),)

@@ -19,23 +19,19 @@ def check(context: Context) -> Iterator[Diagnostic]:
     if len(own) > LONGEST_NAME:
         content = context.syntax.content
         node = content.name if isinstance(content, ast.DataList) else content.routines[0].name
-        message = (
-            f"the module name {own} has {len(own)} characters, and {LONGEST_NAME} are the most"
-        )
+        message = f"the module name {own} has {len(own)} characters; {LONGEST_NAME} are allowed"
         yield context.finding("module-name-too-long", node, message)
         # the routine or data list that carries the name of the file is not distinguished from it
         declared = [name for name in declared if name.key != own]
     for name in declared:
         if len(name.text) > LONGEST_NAME:
-            message = (
-                f"{name.text} has {len(name.text)} characters, and {LONGEST_NAME} are the most"
-            )
+            message = f"{name.text} has {len(name.text)} characters; {LONGEST_NAME} are allowed"
             yield context.finding("name-too-long", name, message)
     content = context.syntax.content
     if isinstance(content, ast.Program) and len(content.routines) > MOST_LOCAL_ROUTINES + 1:
         first = content.routines[MOST_LOCAL_ROUTINES + 1]
         count = len(content.routines) - 1
-        message = f"{count} local routines, and {MOST_LOCAL_ROUTINES} are the most"
+        message = f"{count} local routines; {MOST_LOCAL_ROUTINES} are allowed"
         yield context.finding("too-many-routines", first.name, message)
 
 

@@ -48,7 +48,7 @@ def _in_table(context: Context, table: Table) -> Iterator[Diagnostic]:
 def _twice(context: Context, duplicate: Duplicate) -> Diagnostic:
     first, second = duplicate.first, duplicate.second
     line, _ = context.source.place(first.span[0])
-    message = f"{second.name} is declared already in line {line}"
+    message = f"{second.name} is already declared in line {line}"
     reason = "" if first.kind is second.kind else f"there it is a {first.kind.value}"
     return context.finding("declared-twice", second.span, message, reason=reason)
 

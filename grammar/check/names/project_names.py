@@ -143,5 +143,7 @@ def _from_elsewhere(some: Sequence[UnresolvedName], count: int) -> Diagnostic:
         message = f"{first.name} is in no table of system variables; {uses_of_it}"
     else:
         slug = "unknown-external"
-        message = f"the {WORDS[first.space]} {first.name} is in no file at hand; {uses_of_it}"
+        message = (
+            f"the {WORDS[first.space]} {first.name} is declared in no file at hand; {uses_of_it}"
+        )
     return diagnose(slug, first.path, first.region, message, severity="note")

@@ -44,7 +44,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
             yield _unknown(context, space, use)
     yield from _near_system_names(context)
     if lacks_data_list(context.project, context.module, context.resolution):
-        message = f"{context.module.name} may have a data list, which is missing"
+        message = f"no {context.module.name}.dat is at hand, which may declare what is unknown here"
         yield context.finding("data-list-missing", context.table.span, message)
 
 

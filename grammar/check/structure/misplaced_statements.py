@@ -46,11 +46,11 @@ def _declarations(context: Context, routine: RoutineBody) -> Iterator[Diagnostic
             yield context.finding(
                 "misplaced-declaration",
                 statement,
-                "declarations come first, and not inside a block",
+                "declarations come before instructions, and not inside a block",
             )
         elif first is not None:
             line = context.source.place(first.span[0])[0]
-            message = f"declarations come first, and line {line} is an instruction"
+            message = f"declarations come before instructions, and line {line} is an instruction"
             yield context.finding("misplaced-declaration", statement, message)
 
 

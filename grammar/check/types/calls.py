@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from grammar.check.analysis.signal_direction import side_of
 from grammar.check.analysis.type_checker import TypeChecker
-from grammar.semantics.assignability import misfit, passable
+from grammar.semantics.assignability import passable
 from grammar.semantics.package_scope import PackageScope
 from grammar.semantics.scopes import Found, Scope
 from grammar.semantics.symbols import Kind, ParameterSymbol, RoutineSymbol
@@ -128,8 +128,8 @@ def _check(
         verdict = passable(to, value, is_out=is_out, is_variable=is_variable)
         if not verdict.is_misfit:
             return verdict
-        where = f"for {parameter.name} of {symbol.name}"
-        return replace(verdict, reason=misfit(to, value, where))
+        what = f"the parameter {parameter.name} of {symbol.name} is {to}"
+        return replace(verdict, reason=f"{what}, and this argument is {value}")
 
     checker.check(wanted, argument, accepts, "wrong-argument", is_unconfirmed=is_uncertain)
     # arrays are passed :OUT only [SCO-07], so texts have no other way

@@ -47,7 +47,7 @@ def _check_name(checker: TypeChecker) -> None:
     if not module.is_misnamed:
         return
     what = "data list" if table.is_data else "first routine"
-    message = f"the {what} is called {table.name}, and the file {module.name}"
+    message = f"the {what} is called {table.name}, but the file {module.name}"
     fix = Fix("give both the same name")
     checker.report("module-name", table.span, message, fix=fix)
 
@@ -60,7 +60,7 @@ def _check_use(checker: TypeChecker) -> None:
         return
     lists = map(context.project.data_of, context.project.modules)
     if not any(one is not None and one.path == module.path for one in lists):
-        message = f"this data list is unused: no program is called {table.name}"
+        message = f"no program is called {table.name}, so nothing uses this data list"
         fix = Fix("PUBLIC behind its name would open it to others")
         checker.report("orphan-data-list", table.span, message, fix=fix)
 

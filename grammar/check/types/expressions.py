@@ -118,8 +118,8 @@ def _check_range(checker: TypeChecker, node: ast.Subscript, array: Array) -> Non
         is_given = array.element == UNKNOWN or (
             place >= 1 and (found is None or found.module is None)
         )
-        reach = "the first element has 1" if place < 1 else f"the last element has {size}"
-        message = f"the index {place} lies outside the array: {reach}"
+        reach = "begins at 1" if place < 1 else f"ends at {size}"
+        message = f"index {place} is outside the array, which {reach}"
         checker.report("index-out-of-range", given, message, is_unconfirmed=is_given)
 
 

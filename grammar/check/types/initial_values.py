@@ -89,7 +89,7 @@ class _Values:
             self.checker.report("initial-not-adjacent", node.target, message)
             self.awaited = frozenset({name.key})
         elif _has_blank_line(context.source.text[self.end : node.span[0]]):
-            message = f"a blank line stands between {name.text} and its initial values"
+            message = f"a blank line separates {name.text} from its initial values"
             self.checker.report("initial-not-adjacent", node.target, message, severity="note")
 
     def _check_order(self, root: ast.Variable, target: ast.Expression) -> None:

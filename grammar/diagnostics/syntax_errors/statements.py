@@ -29,8 +29,8 @@ def incomplete_line(site: ErrorSite) -> Mistake | None:
     if not site.is_at_end:
         return None
     if len(site.words) == 1 and site.expects("(", "="):
-        message = f"{site.tokens[0][0][:LONGEST_TOKEN]} alone is not a statement"
-        return Mistake(message, Fix("parentheses behind it would make it a call"))
+        name = site.tokens[0][0][:LONGEST_TOKEN]
+        return Mistake(f"{name} alone is not a statement", Fix(f"write {name}() if it is a call"))
     closer = next((one for one in ")]}" if site.expects(one)), "")
     return Mistake(f"{closer} is missing", site.append(closer)) if closer else None
 

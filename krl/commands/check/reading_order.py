@@ -64,6 +64,6 @@ def _line(one: "Located") -> str:
 
 #: By code what is said of many findings at once, and what is named of each.
 _REPEATED: "Mapping[str, tuple[str, Callable[[Located], str]]]" = {
-    code("unknown-external").code: ("names are in no file at hand:", _text),
+    code("unknown-external").code: ("names are declared in no file at hand:", _text),
     code("parameter-undeclared").code: ("routines do not declare all parameters: lines", _line),
 }
