@@ -319,7 +319,7 @@ _RULES: Mapping[type[Any], Callable[[_Collector, Any], None]] = {
 
 
 def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
-    """Yield the findings that depend on several files."""
+    """Yield the findings about effects that depend on several files."""
     files = list(found)
     declared = frozenset[str]().union(*(one.declared for one in files))
     switched_on = frozenset[str]().union(*(one.switched_on for one in files))

@@ -53,9 +53,9 @@ def read_machine(text: str, path: str = "") -> MachineData:
 
 
 def with_axis_limits_of(machine: MachineData, text: str, path: str = "") -> MachineData:
-    """Return a stand-in for a machine whose data is only partly understood.
+    """Return ``machine`` with the limits and dynamics that partly understood data has.
 
-    It is ``machine`` with the limits and dynamics that the data has for rotary axes.
+    They are those of its rotary axes; the result stands in for the machine of the data.
     """
     try:
         values = read_data_list(text, path)
