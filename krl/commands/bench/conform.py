@@ -65,7 +65,7 @@ def conform(
     jobs: JobsOption = None,
     cache: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Cache trials here; an interrupted run continues."),
+        typer.Option(metavar="DIR", help="Cache results here; an interrupted run continues."),
     ] = None,
 ) -> int:
     """Mutation testing of the cases: change the semantics in one place, and see if a case fails.
