@@ -247,6 +247,9 @@ STILL_NAMES_PART = 2
 #: Recognisers of edited grammars that are kept, and their configurations together. Bound on memory.
 MOST_RECOGNIZERS_KEPT = 160
 MOST_CONFIGURATIONS_KEPT = 40_000
+#: New objects after which garbage is collected while causes are sought. Bound on memory, some 200
+#: MB. Revised: 500,000; most of these collections found less than 2,000 objects, in half a second.
+MANY_OBJECTS = 2_000_000
 #: Configurations of one state under an edited grammar; an edit that needs more gives lines
 #: exponentially many readings and is no good one. Bound: without it one edit could use up the
 #: memory.

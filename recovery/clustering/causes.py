@@ -63,15 +63,15 @@ def find_causes(
     """
     search = CauseSearch(recognizer, lines, weights, count_negatives, file_trial, parsed_files)
     causes: list[Cause] = []
-    with gc_paused():
+    with gc_paused(tuning.MANY_OBJECTS):
         for place, group in enumerate(groups):
             search.is_thorough = place < tuning.HEAVY_GROUPS
             causes += _of_group(search, group)
             on_done(1)
         causes = merged_by_first_word(search, causes)
-    causes = merged_by_reason(search, merged_by_edits(search, causes), reasons)
-    more = completed if len(causes) <= tuning.MOST_CAUSES_COMPLETED else with_more_places
-    causes = [more(search, cause) for cause in causes]
+        causes = merged_by_reason(search, merged_by_edits(search, causes), reasons)
+        more = completed if len(causes) <= tuning.MOST_CAUSES_COMPLETED else with_more_places
+        causes = [more(search, cause) for cause in causes]
     return [replace(cause, proposals=cause.proposals[: tuning.MOST_PROPOSALS]) for cause in causes]
 
 

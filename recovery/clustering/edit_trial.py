@@ -34,7 +34,7 @@ class TrialResult:
     advanced: frozenset[int]
 
 
-@gc_paused()  # recognisers of earlier trials are garbage in cycles
+@gc_paused(tuning.MANY_OBJECTS)  # recognisers of earlier trials are garbage in cycles
 def edited(recognizer: Recognizer, edits: Sequence[Edit]) -> Recognizer | None:
     """Return a recogniser of the edited grammar, or ``None`` if the edits do not fit it.
 
