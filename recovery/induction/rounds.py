@@ -66,8 +66,10 @@ from recovery.survey.failing_line import source_lines
 from recovery.tuning import (
     ADVANCED_WORTH,
     BLOCK_FILES,
+    FEW_FILES,
     FOLD_FILES,
     LEAST_FILES_ALONE,
+    MANY_FILES,
     OPERAND_FILES,
     PLACES_SHOWN,
     SEVERAL,
@@ -323,7 +325,8 @@ class Induction:
             elif fixed & changed:
                 continue  # its place has changed in this round: the next one will try it again
             else:
-                worth = 0.0 if found.is_strict else gain
+                scale = max(1, MANY_FILES / max(FEW_FILES, len(self.shown.files)))
+                worth = 0.0 if found.is_strict else gain * scale
                 # a slip hardly comes in several different lines
                 most = evidence.lines if is_rare and (is_wide or is_odd) else math.inf
                 reason = review.objection(grammar, edits, found.edits, worth, most)
