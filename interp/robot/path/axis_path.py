@@ -106,9 +106,8 @@ class LinearAxes:
 
     def rates(self, u: Array) -> Rates:
         """See `AxisPath.rates`."""
-        shape = (len(u), len(self.start))
-        zeros = np.zeros(shape)
-        return np.broadcast_to(self.end - self.start, shape), zeros, zeros
+        zeros = np.zeros((len(u), len(self.start)))
+        return zeros + (self.end - self.start), zeros, zeros
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -65,7 +65,8 @@ class StraightLine:
 
     def tangents(self, u: Array) -> Array:
         """See `PosePath.tangents`."""
-        return np.broadcast_to(self.end - self.start, (len(u), 3))
+        tangents: Array = np.zeros((len(u), 3)) + (self.end - self.start)
+        return tangents
 
 
 @dataclass(frozen=True, slots=True, eq=False)

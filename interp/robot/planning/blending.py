@@ -53,6 +53,7 @@ _STRAIGHT = 1e-3
 _BACK = -0.99
 """The smallest cosine of a corner whose speed is kept; a reversal has no finite curve."""
 _GRID = np.linspace(0.0, 1.0, 65)
+_ENDS = np.array([0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,7 +131,7 @@ class _Corner:
             others = BlendedAxes(first, second, transition)
             curve = PosePathCurve(one.arm, one.placement, pose_path, start[:ROBOT_AXES], others)
         # The spline of the axes sees little of how quickly the curve begins to bend.
-        ends = axes.rates(np.array([0.0, 1.0]))
+        ends = axes.rates(_ENDS)
         x, y, z = (np.concatenate(both) for both in zip(curve.rates(curve.grid), ends, strict=True))
         in_t1 = self.tracks.reduced_paths(curve, *self.settings)
         slowest = min((path.velocity / path.length for path in in_t1), default=math.inf)
@@ -152,7 +153,7 @@ class _Corner:
         programmed, most = slowest, math.inf
         if self.common is not None:
             tangents = self._pose_path(self.common, transition).tangents(_GRID)
-            bends = np.gradient(tangents, _GRID, axis=0)
+            bends = np.gradient(tangents, _GRID[1], axis=0)
             sharpest, fastest = (
                 max(float(np.linalg.norm(rows, axis=1).max()), _TINY) for rows in (bends, tangents)
             )
@@ -301,7 +302,7 @@ def _parameter(curve_limits: CurveLimits) -> SpeedProfile | None:
 
 def _junctions(transition: Transition) -> tuple[Junction, Junction]:
     """Return the junctions at both ends of a blend."""
-    ((speed,), (bend,), _), _ = transition.rates(np.zeros(1))
-    _, ((gear_out,), (bend_out,), _) = transition.rates(np.ones(1))
-    into = Junction(float(1.0 / speed), float(-bend / speed**3))
-    return into, Junction(float(gear_out), float(bend_out))
+    leaving, joining = transition.rates(_ENDS)
+    speed, bend, _ = leaving[:, 0].tolist()
+    gear, bend_out, _ = joining[:, 1].tolist()
+    return Junction(1.0 / speed, -bend / speed**3), Junction(gear, bend_out)
