@@ -12,6 +12,8 @@ from krl.errors import InputError
 if TYPE_CHECKING:
     from recovery.negatives.negatives import Negative
 
+#: More processes would need more open files than most systems allow.
+_MOST_JOBS = 256
 #: The file for a command's record; `output_files.check_files` checks it in advance.
 JsonOption = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the record to FILE.")
@@ -21,13 +23,17 @@ JsonTooOption = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Also write the record to FILE.")
 ]
 JobsOption = Annotated[
-    int | None, typer.Option(min=1, metavar="N", help="Processes; default: one per core.")
+    int | None,
+    typer.Option(min=1, max=_MOST_JOBS, metavar="N", help="Processes; default: one per core."),
 ]
 #: The same for commands that do little work in this process.
 JobsOrOneOption = Annotated[
     int | None,
     typer.Option(
-        min=1, metavar="N", help="Processes; default: one per core, or one for little input."
+        min=1,
+        max=_MOST_JOBS,
+        metavar="N",
+        help="Processes; default: one per core, or one for little input.",
     ),
 ]
 #: The programs that a bench measures; see `programs_or_ours`.

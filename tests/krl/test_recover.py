@@ -139,6 +139,7 @@ WRONG = {
     "missing negatives": ["{here}/corpus", "--negatives", "{here}/nowhere"],
     "an unknown option": ["{here}/corpus", "--fast"],
     "no process": ["{here}/corpus", "--jobs", "0"],
+    "too many processes": ["{here}/corpus", "--jobs", "100000"],
     "no number of processes": ["{here}/corpus", "--jobs", "many"],
     "an address without a scheduler": ["{here}/corpus", "--scheduler", "tcp://localhost:1"],
     "a file as output folder": ["{here}/corpus", "--out", "{here}/notes.txt"],
