@@ -12,9 +12,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import cast
 
-from recovery.clustering.cause import no_negatives
 from recovery.clustering.cluster import cluster
-from recovery.clustering.negative_score import negative_counter
+from recovery.clustering.negative_score import negative_counter, no_negatives
 from recovery.growth.answers import answered
 from recovery.growth.growth import LedgerSteps
 from recovery.negatives.negatives import Negative

@@ -12,10 +12,10 @@ from typing import Final
 
 from grammar.generation import literals
 from grammar.generation.choices import Weighted
-from grammar.generation.literals import POSES, TEXT, Path, predefined
+from grammar.generation.literals import Path
 from grammar.generation.routine_writer import Counter, ExpressionRule, RoutineWriter
 from grammar.generation.scope import Parameter, Place, Places, Routine, Variable
-from grammar.generation.types import COLOUR, MODE
+from grammar.generation.types import COLOUR, MODE, POSES, TEXT, predefined
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Structure, Type
 
 _ORDERS: Final = ("==", "<>", "<", ">", "<=", ">=", "=>", "=<")

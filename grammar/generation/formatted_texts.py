@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.generation.expressions import array, constant_or_place, expression, read, target, text
-from grammar.generation.literals import TEXT
 from grammar.generation.routine_writer import RoutineWriter
-from grammar.generation.types import COLOUR, STATE
+from grammar.generation.types import COLOUR, STATE, TEXT
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
 _FORMATS: Final[tuple[tuple[Type, tuple[str, ...]], ...]] = (

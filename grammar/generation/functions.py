@@ -7,9 +7,9 @@ from typing import Final
 
 from grammar.generation.choices import Weighted
 from grammar.generation.expressions import constant_or_place, expression, text
-from grammar.generation.literals import AXIS_TYPES, POSES, predefined, structure
 from grammar.generation.patterns import pattern, patterns
 from grammar.generation.routine_writer import ExpressionRule, RoutineWriter
+from grammar.generation.types import AXIS_TYPES, POSES, predefined, structure
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
 _READERS: Final[tuple[tuple[str, Type], ...]] = (

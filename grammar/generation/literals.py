@@ -8,30 +8,11 @@ from itertools import product
 from typing import Final
 
 from grammar.generation.choices import Choices
-from grammar.semantics.predefined import System
+from grammar.generation.types import TEXT
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Enumeration, Structure, Type
-
-#: A text of any length.
-TEXT: Final = Array(CHAR, (None,))
 
 #: The path to a part: literal text, or the size of a dimension for which to draw an index.
 Path = tuple[str | int, ...]
-
-
-def predefined(name: str) -> Type:
-    """Return a predefined type."""
-    return System.load().types[name]
-
-
-def structure(name: str) -> Structure:
-    """Return a predefined structure."""
-    found = predefined(name)
-    assert isinstance(found, Structure)
-    return found
-
-
-POSES: Final = tuple(structure(name) for name in ("FRAME", "POS", "E3POS", "E6POS"))
-AXIS_TYPES: Final = tuple(structure(name) for name in ("AXIS", "E3AXIS", "E6AXIS"))
 
 
 @cache

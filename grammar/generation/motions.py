@@ -17,10 +17,10 @@ from grammar.generation.expressions import (
     target,
     truth,
 )
-from grammar.generation.literals import AXIS_TYPES, POSES
 from grammar.generation.patterns import output, pattern
 from grammar.generation.routine_writer import RoutineWriter
 from grammar.generation.scope import Routine
+from grammar.generation.types import AXIS_TYPES, POSES
 from grammar.motion_kinds import PTP_SPLINE_SEGMENTS, SPLINE_SEGMENTS
 from grammar.semantics.types import INT, REAL
 

@@ -25,8 +25,8 @@ from grammar.generation.expressions import (
     relation,
     text,
 )
-from grammar.generation.literals import TEXT, predefined
 from grammar.generation.routine_writer import ExpressionRule, RoutineWriter, StatementRule
+from grammar.generation.types import TEXT, predefined
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Type
 
 _PLACE: Final = re.compile(r"<[^<>]+>")

@@ -11,7 +11,7 @@ from typing import Final
 
 from grammar.generation.choices import Choices, SeededChoices, Weighted
 from grammar.generation.control_flow import returned, statements
-from grammar.generation.literals import AXIS_TYPES, POSES, TEXT, constant
+from grammar.generation.literals import constant
 from grammar.generation.routine_writer import Names, Part, RoutineWriter, Size
 from grammar.generation.routines import (
     DEPTH,
@@ -29,7 +29,7 @@ from grammar.generation.routines import (
 from grammar.generation.scope import Parameter, Routine, Scope, Variable
 from grammar.generation.statements import channel
 from grammar.generation.style import STYLE
-from grammar.generation.types import COLOUR, MODE, POINT, RECORD, STATE
+from grammar.generation.types import AXIS_TYPES, COLOUR, MODE, POINT, POSES, RECORD, STATE, TEXT
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 
 

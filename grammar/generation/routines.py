@@ -7,18 +7,10 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.generation.choices import Choices
-from grammar.generation.literals import (
-    AXIS_TYPES,
-    POSES,
-    TEXT,
-    constant,
-    declarator,
-    initialisation,
-    type_name,
-)
+from grammar.generation.literals import constant, declarator, initialisation, type_name
 from grammar.generation.routine_writer import Names, RoutineWriter
 from grammar.generation.scope import Parameter, Routine, Scope, Variable
-from grammar.generation.types import COLOUR, POINT
+from grammar.generation.types import AXIS_TYPES, COLOUR, POINT, POSES, TEXT
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Enumeration, Structure, Type
 
 #: The parameter of a recursive routine that limits the remaining depth.

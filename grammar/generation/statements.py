@@ -10,9 +10,8 @@ from typing import Final
 
 from grammar.generation.choices import Weighted
 from grammar.generation.expressions import array, call_of, constant, expression, read, target, text
-from grammar.generation.literals import AXIS_TYPES, POSES, TEXT
 from grammar.generation.routine_writer import RoutineWriter
-from grammar.generation.types import COLOUR, MODE, POINT, RECORD, STATE
+from grammar.generation.types import AXIS_TYPES, COLOUR, MODE, POINT, POSES, RECORD, STATE, TEXT
 from grammar.generation.values import assigned_value
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Type
 

@@ -17,9 +17,9 @@ from grammar.generation.expressions import (
 )
 from grammar.generation.formatted_texts import format_text, scan_text
 from grammar.generation.functions import CONTROLLER_VALUES
-from grammar.generation.literals import POSES
 from grammar.generation.patterns import line, patterns
 from grammar.generation.routine_writer import RoutineWriter, StatementRule, Style
+from grammar.generation.types import POSES
 from grammar.generation.unstated_effects import (
     count_beyond_range,
     order_of_evaluation,

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.generation.expressions import array, constant, read, target
-from grammar.generation.literals import TEXT
 from grammar.generation.routine_writer import RoutineWriter
-from grammar.generation.types import STATE
+from grammar.generation.types import STATE, TEXT
 from grammar.semantics.types import INT
 
 #: First value, last value and step of a FOR whose counter leaves the range of INT.

@@ -30,7 +30,7 @@ from grammar.notation.model import (
     Rule,
     characters_of,
     complement,
-    normalised,
+    normalised_ranges,
 )
 from grammar.notation.unsupported import unsupported
 from grammar.notation.wellformed import misuse, problem
@@ -241,7 +241,7 @@ def _ranges(body: str) -> tuple[CharRange, ...]:
         else:
             found.append((low, low))
             i += 1
-    return normalised(found)
+    return normalised_ranges(found)
 
 
 def _complement(element: Element) -> tuple[CharRange, ...]:

@@ -31,7 +31,7 @@ __all__ = [
     "Span",
     "characters_of",
     "complement",
-    "normalised",
+    "normalised_ranges",
     "reached",
     "referred",
     "walk",
@@ -258,11 +258,11 @@ def characters_of(element: Element) -> tuple[CharRange, ...] | None:
         case Group(alternatives=alternatives):
             found = [characters_of(a.elements[0]) for a in alternatives if len(a.elements) == 1]
             if len(found) == len(alternatives) and None not in found:
-                return normalised([pair for ranges in found for pair in ranges or ()])
+                return normalised_ranges([pair for ranges in found for pair in ranges or ()])
     return None
 
 
-def normalised(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:
+def normalised_ranges(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:
     """Return the same characters as sorted, disjoint, non-touching ranges."""
     merged: list[CharRange] = []
     for low, high in sorted(ranges):
@@ -274,7 +274,7 @@ def normalised(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:
 
 
 def complement(ranges: Sequence[CharRange]) -> tuple[CharRange, ...]:
-    """Return the ranges of all other characters; ``ranges`` are as `normalised` returns them."""
+    """Return the ranges of all other characters; ``ranges`` are `normalised_ranges`."""
     found: list[CharRange] = []
     start = 0
     for low, high in ranges:

@@ -26,7 +26,7 @@ from grammar.notation.model import (
     Repeat,
     Rule,
     complement,
-    normalised,
+    normalised_ranges,
 )
 from grammar.parser.nfa import Nfa
 from support.lazy_dataclass import dataclass
@@ -76,7 +76,7 @@ def both_cases(ranges: Iterable[CharRange]) -> tuple[CharRange, ...]:
             start, end = max(low, ord(first)), min(high, ord(last))
             if start <= end:
                 out.append((start + offset, end + offset))
-    return normalised(out)
+    return normalised_ranges(out)
 
 
 class _CharNfa(Nfa[tuple[CharRange, ...]]):
@@ -175,7 +175,7 @@ def _minimal(
             there = edges[here].setdefault(number[block[target]], [])
             there.append((cuts[letter], cuts[letter + 1] - 1))
     return CharAutomaton(
-        tuple({t: normalised(rs) for t, rs in e.items()} for e in edges),
+        tuple({t: normalised_ranges(rs) for t, rs in e.items()} for e in edges),
         frozenset(number[block[s]] for s, a in enumerate(accepting) if a),
     )
 
@@ -217,7 +217,7 @@ def _equivalent(table: Sequence[Mapping[int, int]], accepting: Sequence[bool]) -
 
 def first_characters(automaton: CharAutomaton) -> tuple[CharRange, ...]:
     """Return the characters with which some accepted text begins."""
-    return normalised([r for ranges in automaton.edges[0].values() for r in ranges])
+    return normalised_ranges([r for ranges in automaton.edges[0].values() for r in ranges])
 
 
 def overlap(left: Sequence[CharRange], right: Sequence[CharRange]) -> bool:

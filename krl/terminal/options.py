@@ -1,4 +1,4 @@
-"""Options and arguments that several commands share."""
+"""Options and arguments that several commands share, and what they mean if nothing is named."""
 
 import os
 from collections.abc import Iterable

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 from grammar.notation.edits import Edit
 
@@ -31,25 +29,3 @@ class Cause:
 
     lines: tuple[int, ...]
     proposals: tuple[Proposal, ...]
-
-
-#: Edits that compete with others for the same lines.
-Rivals = Collection[tuple[Edit, ...]]
-
-
-class NegativeCounter(Protocol):
-    """Counts negatives: programs that must stay rejected."""
-
-    def __call__(self, edits: Sequence[Edit], rivals: Rivals = ()) -> int:
-        """Return how many negatives the grammar would accept with the edits.
-
-        Those that one of the ``rivals`` accepts also count if the edits read the line at which they
-        fail: what leaves a block open accepts no program with it, and is no better for that.
-        """
-        ...
-
-
-def no_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
-    """Return 0: the `NegativeCounter` for a survey without negatives."""
-    del edits, rivals
-    return 0

@@ -23,7 +23,7 @@ from functools import partial
 from grammar.notation.edits import AddAlternative, AddToken, Edit
 from grammar.parser.recognizer import Recognizer
 from recovery import tuning
-from recovery.clustering.cause import Cause, NegativeCounter, Proposal
+from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.completion import added_alternatives, completed
 from recovery.clustering.edit_merging import (
     are_one_change,
@@ -34,6 +34,7 @@ from recovery.clustering.edit_merging import (
 from recovery.clustering.edit_trial import changed_rules
 from recovery.clustering.file_trial import FileTrial
 from recovery.clustering.more_places import with_more_places
+from recovery.clustering.negative_score import NegativeCounter
 from recovery.clustering.reason import Reason
 from recovery.clustering.regression import ParsedFiles, no_parsed_files
 from recovery.clustering.search import CauseSearch

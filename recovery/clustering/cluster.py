@@ -12,9 +12,10 @@ from typing import NamedTuple
 
 from grammar.parser.failures import FailureContext, FailureFinder, Form
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import Cause, NegativeCounter, Proposal, no_negatives
+from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.causes import find_causes
 from recovery.clustering.file_trial import FailingFile, FileTrial
+from recovery.clustering.negative_score import NegativeCounter, no_negatives
 from recovery.clustering.reason import AS_NAME, ReasonFinder
 from recovery.clustering.regression import ParsedFiles
 from recovery.clustering.title import TitleWriter

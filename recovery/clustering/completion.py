@@ -29,9 +29,10 @@ from grammar.parser.failures import Form
 from grammar.parser.network import network_of
 from grammar.parser.recognizer import Recognizer
 from recovery import tuning
-from recovery.clustering.cause import Cause, Proposal, no_negatives
+from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.edit_merging import combined_edits, merged_as_choice
 from recovery.clustering.edit_trial import changed_rules
+from recovery.clustering.negative_score import no_negatives
 from recovery.clustering.search import CauseSearch
 from recovery.forms.parts import choices
 from recovery.proposals.candidates import Candidate

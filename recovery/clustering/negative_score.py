@@ -6,8 +6,9 @@ that this text always has. Therefore only a few of thousands of negatives have t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 from functools import cache
+from typing import Protocol
 
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, Widen
 from grammar.notation.model import (
@@ -21,12 +22,32 @@ from grammar.notation.model import (
     Repeat,
 )
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import NegativeCounter, Rivals
 from recovery.clustering.edit_trial import changed_rules, edited
 from recovery.clustering.joint_trial import DetourReader, Path, rule_of
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.tuning import GENERATED_NEGATIVES, MOST_CONFIGURATIONS_KEPT, NEGATIVES_SEED
+
+#: Edits that compete with others for the same lines.
+Rivals = Collection[tuple[Edit, ...]]
+
+
+class NegativeCounter(Protocol):
+    """Counts negatives: programs that must stay rejected."""
+
+    def __call__(self, edits: Sequence[Edit], rivals: Rivals = ()) -> int:
+        """Return how many negatives the grammar would accept with the edits.
+
+        Those that one of the ``rivals`` accepts also count if the edits read the line at which they
+        fail: what leaves a block open accepts no program with it, and is no better for that.
+        """
+        ...
+
+
+def no_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
+    """Return 0: the `NegativeCounter` for a survey without negatives."""
+    del edits, rivals
+    return 0
 
 
 def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> NegativeCounter:

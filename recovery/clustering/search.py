@@ -14,10 +14,11 @@ from typing import TypeVar
 from grammar.notation.edits import AddToken, Edit
 from grammar.parser.recognizer import Recognizer
 from recovery import tuning
-from recovery.clustering.cause import Cause, NegativeCounter, Proposal
+from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.edit_merging import merged_as_choice
 from recovery.clustering.edit_trial import EditTrial, TrialResult
 from recovery.clustering.file_trial import FileTrial
+from recovery.clustering.negative_score import NegativeCounter
 from recovery.clustering.regression import ParsedFiles, no_parsed_files
 from recovery.forms.symbols import Token
 from recovery.proposals.candidates import Candidate, CandidateFinder

@@ -12,8 +12,9 @@ from grammar.notation.edits import AddAlternative, AddRule, Edit
 from grammar.parser.failures import FailureFinder
 from grammar.parser.lexer import ERROR
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import Cause, NegativeCounter, Proposal
+from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.edit_trial import edited
+from recovery.clustering.negative_score import NegativeCounter
 from recovery.forms.operand_rules import OperandRules
 from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.unknown_tokens import unknown_tokens

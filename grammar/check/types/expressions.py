@@ -1,4 +1,7 @@
-"""Type rules for literals, variables and operators; calls and aggregates have own modules."""
+"""Findings about literals, variables and operators; `grammar.semantics.operations` has the rules.
+
+Calls and aggregates have modules of their own.
+"""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from grammar.motion_kinds import AXIS_MOTIONS
-from interp.controller.motion.positions import FramesInForce, pose_of, word_of
+from interp.controller.motion.positions import FramesInForce, constant_text, pose_of
 from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.state import ControllerState
 from interp.controller.state.variables import Snapshot
@@ -289,11 +289,11 @@ class MotionBuilder:
             Approximation(
                 *(max(_number(apo, name), 0.0) for name in ("CDIS", "CPTP", "CVEL", "CORI"))
             ),
-            word_of(values["$ORI_TYPE"]),
-            word_of(values["$CIRC_TYPE"]),
+            constant_text(values["$ORI_TYPE"]),
+            constant_text(values["$CIRC_TYPE"]),
             self._state.mode == "T1",
-            word_of(self._variables.read(("$CP_VEL_TYPE",))),
-            word_of(self._variables.read(("$TARGET_STATUS",))),
+            constant_text(self._variables.read(("$CP_VEL_TYPE",))),
+            constant_text(self._variables.read(("$TARGET_STATUS",))),
             _loads(values),
         )
 

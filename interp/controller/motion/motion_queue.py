@@ -16,7 +16,7 @@ from grammar.motion_kinds import AXIS_MOTIONS, SPLINE_MOTIONS, WITHOUT_PATH
 from interp.controller.motion.follower import Follower
 from interp.controller.motion.motion_builder import MotionBuilder, PlannedMotion
 from interp.controller.motion.output_switch import OutputSwitch
-from interp.controller.motion.positions import FramesInForce, Positions, word_of
+from interp.controller.motion.positions import FramesInForce, Positions, constant_text
 from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Task
@@ -356,7 +356,7 @@ class MotionQueue:
         """
         if motion.kind in AXIS_MOTIONS:
             return False
-        checks = word_of(self._state.variables.read(("$CP_STATMON",)))
+        checks = constant_text(self._state.variables.read(("$CP_STATMON",)))
         status, turn = self._positions.status_turn(self._positions.actual().axes)
         is_other = "S" in motion.target and (int(motion.target["S"]) ^ status) & _STATUS_BITS != 0
         has_turned = "T" in motion.target and int(motion.target["T"]) != turn

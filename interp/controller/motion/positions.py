@@ -72,7 +72,7 @@ def pose_of(frame: Any) -> Pose | None:
     return None if None in numbers else Pose.of(*map(float, numbers))
 
 
-def word_of(value: Any) -> str:
+def constant_text(value: Any) -> str:
     """Return an enumeration constant as KRL writes it, ``#BASE``; other values in upper case."""
     return str(value).upper()
 
@@ -99,7 +99,7 @@ class FramesInForce:
             base,
             pose_of(values["$TOOL"]) or IDENTITY,
             self._robroot(),
-            IpoMode(word_of(values["$IPO_MODE"])),
+            IpoMode(constant_text(values["$IPO_MODE"])),
             self._machine.carrier,
             table if base == given else None,
         )

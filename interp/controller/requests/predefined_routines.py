@@ -21,9 +21,9 @@ from interp.controller.motion.motion_builder import target_of
 from interp.controller.motion.positions import (
     FramesInForce,
     axes_value,
+    constant_text,
     pose_of,
     pose_value,
-    word_of,
 )
 from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.state import ControllerState
@@ -281,7 +281,7 @@ class PredefinedRoutines:
         base, which, foot = map(known, request.arguments)
         root, offset = pose_of(base), pose_of(foot)
         machine = self._state.machine
-        system = machine.tables.get(word_of(which))
+        system = machine.tables.get(constant_text(which))
         if root is None or offset is None:
             raise fault("uninitialised")
         if system is None:
@@ -350,7 +350,7 @@ def _checked(entry: PredefinedFunction, request: Invoke) -> Invoke:
 
 def _name_of(constant: Value | None) -> str:
     """Return the name of an enumeration constant in upper case."""
-    return word_of(known(constant)).lstrip("#")
+    return constant_text(known(constant)).lstrip("#")
 
 
 def _int(argument: Value | None) -> int:

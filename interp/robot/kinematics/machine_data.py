@@ -49,7 +49,7 @@ class AxisKind(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Dynamics:
+class AxisDynamics:
     """The limits of an axis: velocity, acceleration and jerk, in degrees or mm and seconds."""
 
     velocity: float
@@ -59,7 +59,7 @@ class Dynamics:
     @classmethod
     def ramped(
         cls, velocity: float, run_up: float = RUN_UP_TIME, filtered: float = FILTER_TIME
-    ) -> Dynamics:
+    ) -> AxisDynamics:
         """Return those of an axis with a time to full speed and one to full acceleration, in s."""
         acceleration = velocity / run_up
         return cls(velocity, acceleration, acceleration / filtered)
@@ -80,7 +80,7 @@ class Axis:
     direction: int
     lower: float
     upper: float
-    dynamics: Dynamics | None
+    dynamics: AxisDynamics | None
     approximation: float
     assumed: bool = False
 

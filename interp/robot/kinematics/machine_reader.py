@@ -27,9 +27,9 @@ from interp.robot.kinematics.machine_data import (
     T1_PERCENT,
     T1_SPEED,
     Axis,
+    AxisDynamics,
     AxisKind,
     CartesianLimits,
-    Dynamics,
     MachineData,
     MachineDataError,
     Palletising,
@@ -202,7 +202,7 @@ class _Reader:
         except ValueError:
             raise self._error(f"$AXIS_TYPE[{number}] is {kind}, not 1, 3 or 5") from None
 
-    def _dynamics(self, number: int, kind: AxisKind) -> Dynamics | None:
+    def _dynamics(self, number: int, kind: AxisKind) -> AxisDynamics | None:
         """Return the limits of an axis from motor and gear, and from run-up time or jerk [MOT-06].
 
         $RAT_MOT_AX is in revolutions of the motor per revolution of the axis, or per metre of
@@ -220,10 +220,10 @@ class _Reader:
         run_up = self._number(f"$RAISE_TIME[{number}]", default=0.0) / 1000.0
         if run_up <= 0.0:
             if 0.0 < jerk < _UNKNOWN_JERK:
-                return Dynamics(velocity, math.sqrt(velocity * jerk) / 2.0, jerk)
+                return AxisDynamics(velocity, math.sqrt(velocity * jerk) / 2.0, jerk)
             run_up = RUN_UP_TIME
         filtered = self._number("$DEF_FLT_PTP", default=0.0) / 1000.0
-        return Dynamics.ramped(velocity, run_up, filtered or FILTER_TIME)
+        return AxisDynamics.ramped(velocity, run_up, filtered or FILTER_TIME)
 
     def _singular(self, number: int) -> int:
         return self._integer(f"$SINGUL_POS[{number}]", default=0)

@@ -9,10 +9,10 @@ import numpy as np
 
 from interp.robot.arm import Load
 from interp.robot.kinematics.kinematics import Array
-from interp.robot.kinematics.machine_data import Axis, AxisKind, Dynamics, MachineData
+from interp.robot.kinematics.machine_data import Axis, AxisDynamics, AxisKind, MachineData
 from interp.robot.planning.torque_limits import TorqueLimits
 
-_ROTARY, _LINEAR = Dynamics.ramped(180.0), Dynamics.ramped(1000.0)
+_ROTARY, _LINEAR = AxisDynamics.ramped(180.0), AxisDynamics.ramped(1000.0)
 """The dynamics of an axis without machine data: assumed, similar to those of other arms."""
 
 
@@ -73,7 +73,7 @@ def axis_limits(machine: MachineData, torques: TorqueLimits | None = None) -> Ax
     )
 
 
-def _dynamics(axis: Axis) -> Dynamics:
+def _dynamics(axis: Axis) -> AxisDynamics:
     if axis.dynamics is not None:
         return axis.dynamics
     return _LINEAR if axis.kind is AxisKind.LINEAR else _ROTARY

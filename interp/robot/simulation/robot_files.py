@@ -24,8 +24,8 @@ from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import (
     ROBOT_AXES,
     Axis,
+    AxisDynamics,
     AxisKind,
-    Dynamics,
     MachineData,
 )
 from interp.values.poses import Pose
@@ -252,7 +252,7 @@ def _machine(
                 direction=1,
                 lower=lower,
                 upper=upper,
-                dynamics=Dynamics.ramped(speed) if speed else None,
+                dynamics=AxisDynamics.ramped(speed) if speed else None,
                 approximation=90.0,
             )
         )

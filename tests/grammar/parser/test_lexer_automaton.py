@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from grammar.notation.g4 import read
 from grammar.notation.generate import GRAMMAR
-from grammar.notation.model import Grammar, GrammarError, normalised
+from grammar.notation.model import Grammar, GrammarError, normalised_ranges
 from grammar.parser.lexer_automaton import (
     CharAutomaton,
     automaton_of,
@@ -48,10 +48,10 @@ def members(ranges: tuple[tuple[int, int], ...] | list[tuple[int, int]]) -> set[
 @given(RANGES)
 def test_normalised_ranges(ranges: list[tuple[int, int]]) -> None:
     """Normalising keeps the characters and leaves sorted ranges that do not touch."""
-    result = normalised(ranges)
+    result = normalised_ranges(ranges)
     assert members(ranges) == members(result)
     assert all(high + 1 < low for (_, high), (low, _) in pairwise(result))
-    assert result == normalised(list(reversed(ranges)))
+    assert result == normalised_ranges(list(reversed(ranges)))
 
 
 @given(RANGES)
@@ -65,7 +65,7 @@ def test_both_cases_of_ascii_only(ranges: list[tuple[int, int]]) -> None:
 @given(RANGES)
 def test_a_set_as_re_writes_it(ranges: list[tuple[int, int]]) -> None:
     """The class for ``re`` matches these characters and no other, whatever they mean to ``re``."""
-    pattern = re.compile(class_of(normalised(ranges)))
+    pattern = re.compile(class_of(normalised_ranges(ranges)))
     assert members(ranges) == {c for c in range(600) if pattern.fullmatch(chr(c))}
 
 
@@ -131,7 +131,7 @@ def test_case_is_ignored_where_the_grammar_says_so() -> None:
 
 def test_what_a_match_begins_with() -> None:
     """The first characters of all rules together, options that may be absent included."""
-    expected = normalised([(ord(c), ord(c)) for c in "abcxz"])
+    expected = normalised_ranges([(ord(c), ord(c)) for c in "abcxz"])
     assert expected == first_characters(automaton("A : 'x'? [a-c] ; B : 'z' ;"))
 
 

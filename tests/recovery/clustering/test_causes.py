@@ -10,9 +10,10 @@ from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import Cause, NegativeCounter, Rivals
+from recovery.clustering.cause import Cause
 from recovery.clustering.causes import find_causes
 from recovery.clustering.edit_trial import EditTrial
+from recovery.clustering.negative_score import NegativeCounter, Rivals
 from recovery.clustering.search import CauseSearch
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts

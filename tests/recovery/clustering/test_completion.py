@@ -6,8 +6,9 @@ import pytest
 
 from grammar.notation.edits import AddAlternative, AddRule, Edit, Insert, MakeOptional, Widen, apply
 from grammar.notation.g4 import read
-from recovery.clustering.cause import Cause, Rivals
+from recovery.clustering.cause import Cause
 from recovery.clustering.completion import completed, continued
+from recovery.clustering.negative_score import Rivals
 from tests.recovery.clustering.test_merged_causes import (
     GRAMMAR,
     gathering,

@@ -7,8 +7,9 @@ from grammar.notation.edits import AddAlternative, AddToken, Edit, Widen
 from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cause import Cause, NegativeCounter, Proposal, Rivals, no_negatives
+from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.causes import merged_by_edits, merged_by_first_word, merged_by_reason
+from recovery.clustering.negative_score import NegativeCounter, Rivals, no_negatives
 from recovery.clustering.search import CauseSearch
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.survey import survey_texts
