@@ -23,6 +23,7 @@ from recovery.induction.folds_of_declarations import (
     heads,
     modifiers,
     tails,
+    types,
     undeclared,
 )
 from recovery.induction.folds_of_operands import (
@@ -38,6 +39,7 @@ from recovery.induction.steps import InferredStep
 #: The kinds of fold, in the order in which they are tried.
 FOLDS: tuple[Callable[[GrammarView], Iterator[InferredStep]], ...] = (
     unused_rules,
+    types,
     alternatives_of_a_word,
     alternatives_of_two_rules,
     lists,

@@ -6,8 +6,8 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise, product, takewhile
 
-from grammar.notation.edits import Edit, Insert, RemoveAlternative, Replace
-from grammar.notation.model import Element, Literal, Reference, Repeat, Rule
+from grammar.notation.edits import AddAlternative, Edit, Insert, RemoveAlternative, Replace
+from grammar.notation.model import Element, Literal, Reference, Repeat, Rule, walk
 from recovery.brackets import BRACKETS
 from recovery.forms.operand_rules import bracket_pairs
 from recovery.forms.samples import samples_of
@@ -150,6 +150,41 @@ def undeclared(view: GrammarView) -> Iterator[InferredStep]:
                     title = f"{', '.join(words)} without {min(view.words(first))}"
                     breadth = RULE_SYMBOLS + len(between)
                     yield InferredStep(f"{title} in {rule.name}", edits, (), breadth=breadth)
+
+
+def types(view: GrammarView) -> Iterator[InferredStep]:
+    """Yield any type behind other words, where a line that begins with the same word has any.
+
+    Only with that word: without it, lines may have fewer types. What follows has to be alike.
+    """
+    for rule in view.grammar.parser_rules:
+        wide: dict[tuple[str, str], str] = {}  # rules of types by first words and what follows
+        narrow: list[tuple[int, Sequence[Element], Element, str]] = []
+        for number in range(1, 1 + len(rule.alternatives)):
+            line = view.line(rule.name, number)
+            kinds = (n for n, e in enumerate(line[:-1]) if view.words(e) or _is_kind(view, e))
+            place = next((n for n in kinds if view.is_name(line[n + 1])), 0)
+            kind, behind = line[place : place + 1], view.source(rule.name, line[place + 1 :][:2])
+            match kind:
+                case [Reference(name=name)] if place and name in view.rules.type_rules:
+                    first_words = (e.name for e in walk(line[0]) if isinstance(e, Reference))
+                    wide |= {(word, behind): name for word in first_words}
+                case [element] if place > 1 and all(_modifiers(view, e) for e in line[:place]):
+                    narrow.append((number, line[:place], element, behind))
+        for number, (first, *others), element, behind in narrow:
+            words = _modifiers(view, first)
+            kind_rule = wide.get((min(words), behind)) if len(words) == 1 else None
+            if kind_rule is None or all(map(view.is_ending, others)):
+                continue
+            between = view.source(rule.name, others)
+            text = f"{min(words)} {between} {kind_rule}"
+            if view.is_ending(first):
+                text = f"({text} | {between} {view.source(rule.name, [element])})"
+            known = view.profile.vocabulary.words_of(kind_rule)
+            edits: list[Edit] = [Replace(rule.name, (number, 1), text, len(others) + 2)]
+            edits += (AddAlternative(kind_rule, w) for w in sorted(view.words(element) - known))
+            title = f"any type behind {min(words)} {between} in {rule.name}"
+            yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS)
 
 
 def _declares(view: GrammarView, elements: Sequence[Element]) -> bool:

@@ -240,15 +240,14 @@ class LineEdits:
         self, head: str, shapes: dict[tuple[Symbol, ...], list[int]], members: Sequence[int]
     ) -> Iterator[InferredStep]:
         """Return edits of an alternative with the same first words, to read these lines, too."""
-        words = head.split()
+        alike = []
         for rule, place, first in self.hosts.all_lines:
-            inside = [e for e in first if not is_optional(e)]
-            leads = [self.hosts.words_of(e) for e in inside[:2]]
             yield from self._one_word_apart(rule, place, first, members)
-            if not inside or words[0] not in leads[0]:
-                continue
-            if len(words) > 1 and (len(leads) < 2 or words[1] not in leads[1]):
-                continue
+            if self._begins(first, head.split()):
+                alike.append((rule, place, first))
+        # what a rule reads as far as no other one does is a line of that rule
+        inside = self._inside(members) if len(alike) > 1 else frozenset()
+        for rule, place, first in [a for a in alike if a[0] in inside] or alike:
             title = f"{head} … in {rule}"
             for at, tails in self._tails(rule, place, len(first), members).items():
                 # what a comma begins would be taken for a list; some only do so go on with one
@@ -261,10 +260,23 @@ class LineEdits:
                         Insert(rule, at, optional(f"{comma} {text}".strip())),
                     )
                     yield InferredStep(title, edits, tuple(members))
-            alike, old = self._one_choice(rule, first, shapes)
-            for text in self.forms.of(alike, old):
+            chosen, old = self._one_choice(rule, first, shapes)
+            for text in self.forms.of(chosen, old):
                 edits = (*self.forms.reserving(text), Replace(rule, place, text, len(first)))
                 yield InferredStep(title, edits, tuple(members))
+
+    def _begins(self, elements: Sequence[Element], words: Sequence[str]) -> bool:
+        """Return whether a form may begin with some words, at least one."""
+        leads = [self.hosts.words_of(e) for e in elements if not is_optional(e)][: len(words)]
+        pairs = zip(words, leads, strict=False)
+        return len(leads) == len(words) and all(word in lead for word, lead in pairs)
+
+    def _inside(self, members: Sequence[int]) -> frozenset[str]:
+        """Return the rules in which the grammar is where some lines fail."""
+        recognizer = self.at.recognizer
+        states = map(self.at.state, members)
+        sites = {position for state in states for position, _ in recognizer.sites(state)}
+        return frozenset(recognizer.network.rule[position] for position in sites)
 
     def _one_word_apart(
         self, rule: str, place: Address, first: Sequence[Element], members: Sequence[int]

@@ -12,7 +12,7 @@ from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from recovery.induction.folding import FOLDS, folds_of
-from recovery.induction.folds_of_declarations import heads
+from recovery.induction.folds_of_declarations import heads, types
 from recovery.induction.folds_of_operands import any_operands
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import InferredStep
@@ -303,6 +303,34 @@ def test_words_that_lines_begin_with() -> None:
     assert 1 == len(after.grammar.by_name["line"].alternatives)
 
 
+_TYPES = """grammar Toy;
+program : (line NEWLINE)* EOF ;
+line
+    : (DIM OPEN? | OPEN) kind NAME
+    | DIM? OPEN? FIX base NAME
+    | DIM SLOW TURN NAME
+    | DIM FAST TURN NAME NAME
+    | MOVE FAST base NAME
+    | base NAME
+    ;
+kind : INT | REAL | NAME ;
+base : INT | REAL ;
+"""
+
+
+def test_types_behind_other_words() -> None:
+    """With a word that all types follow any type follows the next word, too; without it none."""
+    grammar = read(_declared(_TYPES))
+    folds = list(types(GrammarView(Recognizer(grammar), ())))
+    after = Recognizer(apply(grammar, [edit for fold in folds for edit in fold.edits]))
+    wider = ("DIM FIX A B\n", "DIM OPEN FIX A B\n", "DIM SLOW A B\n", "DIM TURN B\n")
+    same = ("FIX INT B\n", "OPEN FIX INT B\n", "DIM FIX INT B\n", "DIM SLOW TURN B\n")
+    never = ("FIX A B\n", "OPEN FIX A B\n", "MOVE FAST A B\n", "DIM FAST A B C\n", "A B\n")
+    assert not any(map(Recognizer(grammar).accepts, wider))
+    assert [True] * 8 + [False] * 5 == list(map(after.accepts, wider + same + never))
+    assert [] == list(types(GrammarView(after, ())))
+
+
 _BLOCKS = """grammar Toy;
 program : (block NEWLINE)* EOF ;
 statement : (MOVE NAME)? NEWLINE | block NEWLINE ;
@@ -339,7 +367,15 @@ def test_a_fold_reads_all_that_was_read(
 ) -> None:
     """Each kind of fold is offered, well formed, and reads the sentences of the grammar."""
     offered = 0
-    for text in (_GRAMMAR, _LIKE, _declared(), _declared(_HEADS), _blocks(), _values()):
+    for text in (
+        _GRAMMAR,
+        _LIKE,
+        _declared(),
+        _declared(_HEADS),
+        _declared(_TYPES),
+        _blocks(),
+        _values(),
+    ):
         grammar = read(text)
         sentences, speller, random = Sentences(grammar), Speller(grammar), Random(3)
         texts = [speller.text(sentences.random(random)) for _ in range(100)]

@@ -456,6 +456,29 @@ def test_a_form_has_what_its_place_shows(toy: Grammar) -> None:
     assert [True, False] == [recognizer.accepts(text) for text in texts]
 
 
+def test_what_reads_furthest_grows(toy: Grammar) -> None:
+    """Of two forms that begin alike only the one is extended that reads the line until it fails."""
+    entry = "entry\n    : DIM NAME ':=' NUMBER eol\n    | kind\n    ;\n\n"
+    start = _with(
+        toy,
+        "NEWLINE* statement* EOF",
+        "NEWLINE* entry* HALT eol statement* EOF",
+        "    : simpleStatement eol\n",
+        "    : simpleStatement eol\n    | kind\n",
+        "    | halt\n",
+        "",
+        "halt\n    : HALT\n    ;\n",
+        f"{entry}kind\n    : DIM NAME eol\n    ;\n",
+        "HALT : 'HALT' ;",
+        "HALT : 'HALT' ;\nDIM : 'DIM' ;",
+    )
+    text = "DIM A := 1\nDIM B := F(A)\nHALT\nDIM C\nODD WORD 1\n"
+    rounds = _grown(start, (CorpusFile("a/a.toy", text, frozenset({"a"})),)).rounds
+    titles = {step["title"] for done in rounds for step in done["taken"] + done["refused"]}
+    assert "DIM … in entry" in titles
+    assert "DIM … in kind" not in titles
+
+
 def test_a_choice_of_words_stays_one(toy: Grammar) -> None:
     """What is read behind one of several words is read behind the others."""
     start = _with(toy, "HALT : 'HALT' ;", "HALT : 'HALT' ;\nINT : 'INT' ;\nREAL : 'REAL' ;")
