@@ -345,15 +345,6 @@ def _run(controller: Controller, setup: RunSetup, on_time: Callable[[int], None]
             return outcome
 
 
-def submit_of(program: CheckedProgram) -> str | None:
-    """Return the submit program of a project, which controllers call SPS."""
-    for unit in program.units.values():
-        routines = program.routines_of(unit)
-        if unit.module.suffix == ".sub" and routines and routines[0].node.name.key == "SPS":
-            return routines[0].name
-    return None
-
-
 def _home(
     values: Mapping[str, Value], machine: MachineData, upright: tuple[float, ...]
 ) -> tuple[float, ...]:

@@ -44,10 +44,10 @@ def reduce_program(files: Files, holds: Callable[[Files], bool], most: int = 1_5
         while search.simplify():
             has_changed = True
     search.tidy()
-    return Reduced(search.files, statements_of(search.files))
+    return Reduced(search.files, statement_count(search.files))
 
 
-def statements_of(files: Files) -> int:
+def statement_count(files: Files) -> int:
     """Return the number of statements, without declarations."""
     return sum(
         isinstance(node, ast.Statement) and not isinstance(node, ast.Definition)

@@ -15,7 +15,6 @@ To get a scope: ``project.scope(module)`` for a file, ``project.scope(module, ro
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cache, cached_property
@@ -55,7 +54,7 @@ class File:
     """A file to link. ``path`` has ``/``; files of different origins never share a project.
 
     A file that cannot be read has neither ``syntax`` nor ``table``, but its presence still matters.
-    ``words`` are the names in its unreadable part (`words_of`), because it cannot declare any
+    ``words`` are the names in its unreadable part (`names_in_text`), because it cannot declare any
     others. ``table`` may come from a cache, since it depends on the content alone; a file with a
     table and no ``syntax`` can be referred to.
     """
@@ -320,13 +319,6 @@ def extended(
 
 
 # ------------------------------------------------------------------------------------- modules
-
-_WORD = re.compile(r";[^\r\n]*|([A-Z_$][A-Z0-9_$]*)")
-
-
-def words_of(text: str) -> frozenset[str]:
-    """Return the names in a text outside comments, in upper case; it can declare no others."""
-    return frozenset(_WORD.findall(text.upper())) - {""}
 
 
 def _module(file: File) -> Module:

@@ -28,6 +28,7 @@ _MARK = re.compile(
     r";[ \t]*(?:FOLD(?:[ \t]+|(?=[;\r\n])|\Z)([^\r\n]*)|ENDFOLD\b)", re.IGNORECASE | re.ASCII
 )
 _PARAMETERS = re.compile(r";[ \t]*%\{")
+_WORD = re.compile(r";[^\r\n]*|([A-Z_$][A-Z0-9_$]*)")
 _PARAMETER_LINE = re.compile(r";[ \t]*PARAMS[ \t]", re.IGNORECASE | re.ASCII)
 
 
@@ -174,6 +175,11 @@ class Source:
                 yield fold(line)
         while opened:
             yield fold(None)
+
+
+def names_in_text(text: str) -> frozenset[str]:
+    """Return the names in a text outside comments, in upper case; it can declare no others."""
+    return frozenset(_WORD.findall(text.upper())) - {""}
 
 
 def _split(title: str) -> tuple[str, bool, str]:

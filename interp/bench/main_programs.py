@@ -16,10 +16,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 from typing import Final, Literal
 
-from grammar.semantics.link import words_of
 from grammar.syntax import ast
 from grammar.syntax.references import calls_in
-from grammar.syntax.source import Source
+from grammar.syntax.source import Source, names_in_text
 from grammar.syntax.walk import walk
 from interp.controller.inputs.automatic_inputs import OPERATOR
 from interp.controller.inputs.input_script import Script
@@ -28,7 +27,7 @@ from interp.controller.state.trace import TraceEvent
 from interp.executors import Prepared
 from interp.program.load import CheckedProgram, load_all
 from interp.program.routine_callers import with_caller
-from interp.session import RunResult, RunSetup, run_program, submit_of
+from interp.session import RunResult, RunSetup, run_program
 from interp.standins.uses import FOLDER
 from interp.values.faults import FAULTS, Fault, LinkError
 
@@ -127,7 +126,7 @@ def main_programs(
             and first.node.name.key not in called[key]
         )
         if is_wanted:
-            found.append(MainProgram(Prepared(program), path, first.name, submit_of(program)))
+            found.append(MainProgram(Prepared(program), path, first.name, program.submit_name()))
     return found, list(unread)
 
 
@@ -264,7 +263,7 @@ def _own_faults(program: CheckedProgram, run: RunResult, stood_in: Iterable[str]
         is_of_arm = bool(run.machine_note) and getattr(error, "slug", "") not in FAULTS
         if is_of_arm or file not in texts or file.startswith(FOLDER):
             continue
-        if names.isdisjoint(words_of(texts[file].line(line))):
+        if names.isdisjoint(names_in_text(texts[file].line(line))):
             yield f"{file}:{line}: {error}"
 
 

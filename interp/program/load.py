@@ -181,6 +181,14 @@ class CheckedProgram:
         """Return the routines with which a run begins; raise `LinkError` as `start` does."""
         return [self.start(routine), *([self.start(submit)] if submit else [])]
 
+    def submit_name(self) -> str | None:
+        """Return the name of the project's submit program, which controllers call SPS."""
+        for unit in self.units.values():
+            routines = self.routines_of(unit)
+            if unit.module.suffix == ".sub" and routines and routines[0].node.name.key == "SPS":
+                return routines[0].name
+        return None
+
     def used_stand_ins(self, *routines: Routine) -> tuple[StandIn, ...]:
         """Return the stand-ins that the files reachable from some routines use, in their order.
 

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 from itertools import islice, product
 from typing import Final
 
-from grammar.semantics.link import File, Project, extended, words_of
+from grammar.semantics.link import File, Project, extended
 from grammar.semantics.scopes import Found, Module
 from grammar.semantics.types import BOOL, UNKNOWN, Array, Type
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
-from grammar.syntax.source import Source
+from grammar.syntax.source import Source, names_in_text
 from grammar.syntax.walk import walk
 
 #: Makes a value, as it is written, of a type and for a name.
@@ -64,7 +64,7 @@ def unset_data(project: Project, sources: Mapping[str, Source]) -> tuple[Unset, 
     for module in project.modules:
         if module.syntax is None or isinstance(module.syntax.content, ast.DataList):
             continue
-        if open_.keys().isdisjoint(words_of(sources[module.path].text)):
+        if open_.keys().isdisjoint(names_in_text(sources[module.path].text)):
             continue
         for node in walk(module.syntax):
             set_ |= _set_by(node)

@@ -13,13 +13,13 @@ from itertools import chain
 
 from grammar.diagnostics.diagnostic import Region
 from grammar.diagnostics.expected_tokens import is_reserved, names
-from grammar.semantics.link import words_of
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import Answer, Found
 from grammar.semantics.symbols import Kind, Table, TypeSymbol
 from grammar.semantics.types import Enumeration
 from grammar.syntax.build import builder
 from grammar.syntax.references import Space
+from grammar.syntax.source import names_in_text
 from krl.language_server.hover import found_at
 from krl.language_server.symbols import seen_everywhere, type_name
 from krl.language_server.workspace import AnalysedFile, OpenProject, certain
@@ -64,7 +64,7 @@ def places(project: OpenProject, looked: AnalysedFile, offset: int) -> list[tupl
     listed = set()
     for path in project.paths():
         source = project.source(path)
-        if source is None or key not in words_of(source.text):
+        if source is None or key not in names_in_text(source.text):
             continue
         there = project.look(path)
         if there is not None:
@@ -116,7 +116,7 @@ def renaming(
 
 def _is_taken(looked: AnalysedFile, key: str) -> bool:
     """Return whether a file uses, declares or can see a name."""
-    if key in words_of(looked.source.text):
+    if key in names_in_text(looked.source.text):
         return True
     if looked.project is None or looked.module is None:
         return False

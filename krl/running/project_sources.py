@@ -104,7 +104,7 @@ def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
 
 def _named_from(asked: "Found", found: "Sequence[Found]", *, is_controller: bool) -> "list[Found]":
     """Return the files to which a file refers, directly or not, with system data and submit."""
-    from grammar.semantics.link import words_of
+    from grammar.syntax.source import names_in_text
     from support.files.discovery import SourceFile, read_source
 
     by_name: dict[str, list[Found]] = {}
@@ -122,7 +122,7 @@ def _named_from(asked: "Found", found: "Sequence[Found]", *, is_controller: bool
         if one not in named:
             named[one] = None
             read = read_source(one)
-            words = words_of(read.text) if isinstance(read, SourceFile) else frozenset[str]()
+            words = names_in_text(read.text) if isinstance(read, SourceFile) else frozenset[str]()
             todo += [other for name in words & by_name.keys() for other in by_name.pop(name)]
     return [one for one in found if one in named]
 

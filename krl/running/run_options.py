@@ -184,7 +184,7 @@ def prepared_run(
     from interp.controller.state.profile import Profile
     from interp.executors import available
     from interp.program.load import Limits
-    from interp.session import RunSetup, submit_of
+    from interp.session import RunSetup
 
     chosen = options.io
     is_auto = str(chosen) == _AUTO or (chosen is None and is_terminal)
@@ -201,7 +201,7 @@ def prepared_run(
     program, left = load_program(
         file, strict=options.strict, stands_in=not options.strict, routine=options.routine
     )
-    submit = submit_of(program) if is_auto and options.submit is None else options.submit
+    submit = program.submit_name() if is_auto and options.submit is None else options.submit
     seconds, patience = options.max_time, _SECONDS
     if seconds is None:
         seconds, patience = (_AUTO_SECONDS, _AUTO_PATIENCE) if is_auto else (_SECONDS, _SECONDS)

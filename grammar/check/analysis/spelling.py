@@ -13,9 +13,8 @@ from collections.abc import Callable, Iterable, Mapping, Set
 from functools import cached_property
 
 from grammar.diagnostics.typos import Typos
-from grammar.semantics.link import words_of
 from grammar.semantics.predefined import System
-from grammar.syntax.source import Source
+from grammar.syntax.source import Source, names_in_text
 
 # So many letters before and behind a slip are compared, in this order.
 _WIDTHS = ((4, 4), (3, 3), (2, 2), (3, 0), (0, 3), (2, 0), (0, 2), (1, 1))
@@ -106,7 +105,7 @@ class Spelling:
 
 def spelling_of(sources: Iterable[Source]) -> Spelling:
     """Return the spelling of the names in some texts, which are read when it is first used."""
-    return Spelling(lambda: [(source.path, words_of(source.text)) for source in sources])
+    return Spelling(lambda: [(source.path, names_in_text(source.text)) for source in sources])
 
 
 def _common(one: str, other: str) -> int:

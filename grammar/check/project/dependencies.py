@@ -18,8 +18,9 @@ from enum import Enum
 from functools import cache
 
 from grammar.notation.model import reached
-from grammar.semantics.link import Project, words_of
+from grammar.semantics.link import Project
 from grammar.semantics.symbols import Kind, ModuleTable
+from grammar.syntax.source import names_in_text
 from support.lazy_dataclass import dataclass
 
 
@@ -75,7 +76,7 @@ def contribution(
     for word in unread or ():
         known.setdefault(word, []).append("is not read")
     facts = {name: "; ".join(some) for name, some in known.items()}
-    return Contribution(path, facts, words_of(text))
+    return Contribution(path, facts, names_in_text(text))
 
 
 def needs_of(project: Project, contributions: Sequence[Contribution | None]) -> Iterator[Needs]:
@@ -88,7 +89,7 @@ def needs_of(project: Project, contributions: Sequence[Contribution | None]) -> 
             paths.setdefault(name, []).append(given.path)
     digests = {name: _digest((*paths[name], *some)) for name, some in facts.items()}
     mentioned = {
-        name: facts.keys() & frozenset[str]().union(*map(words_of, some))
+        name: facts.keys() & frozenset[str]().union(*map(names_in_text, some))
         for name, some in facts.items()
     }
     reach = {name: reached(mentioned, name) | {name} for name in facts}

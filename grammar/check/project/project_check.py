@@ -31,14 +31,14 @@ from grammar.check.project.suppression_comments import SuppressionComment, suppr
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.diagnostics.error_recovery import recover
 from grammar.diagnostics.syntax_errors.findings import syntax_findings
-from grammar.semantics.link import File, Project, link, words_of
+from grammar.semantics.link import File, Project, link
 from grammar.semantics.predefined import System
 from grammar.semantics.scopes import REST, Module
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import ModuleTable
 from grammar.syntax import ast
 from grammar.syntax.build import builder
-from grammar.syntax.source import Source
+from grammar.syntax.source import Source, names_in_text
 from support.files.decode import decode, digest
 from support.gc_pause import gc_paused
 from support.lazy_dataclass import dataclass
@@ -171,10 +171,10 @@ def read_source(source: Source) -> Reading:
     if isinstance(tree, ast.Module):
         return Reading(tree)
     if any(failure.reason for failure in tree):
-        return Reading(None, tuple(syntax_findings(tree, source)), words_of(source.text))
+        return Reading(None, tuple(syntax_findings(tree, source)), names_in_text(source.text))
     recovered = recover(source.text, source.path)
     found = tuple(syntax_findings(recovered.failures, source))
-    words = words_of(recovered.dropped) | ({REST} if recovered.is_cut else set())
+    words = names_in_text(recovered.dropped) | ({REST} if recovered.is_cut else set())
     return Reading(recovered.syntax, found, words, recovered.exchanged)
 
 

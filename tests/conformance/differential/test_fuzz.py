@@ -14,7 +14,7 @@ from conformance.differential import campaign, runs
 from conformance.differential.campaign import fuzz, record_of
 from conformance.differential.divergence import difference, diverged, prepared
 from conformance.differential.random_world import RandomWorld
-from conformance.differential.reduction import reduce_program, statements_of
+from conformance.differential.reduction import reduce_program, statement_count
 from conformance.differential.runs import EXECUTORS, LIMITS, trace_of
 from conformance.differential.traces import plain, shown
 from conformance.suite import case
@@ -101,7 +101,7 @@ def test_reduction_keeps_what_holds() -> None:
     files = (("PROG.SRC", main_text), ("PROG.DAT", "DEFDAT PROG\nINT K=1\nENDDAT\n"))
     found = reduce_program(files, lambda given: "I+7" in given[0][1] and _loads(given))
     assert (("PROG.SRC", "DEF PROG()\n    J=I+7\nEND\n"),) == found.files
-    assert 1 == found.statements == statements_of(found.files)
+    assert 1 == found.statements == statement_count(found.files)
 
 
 def _loads(files: Any) -> bool:

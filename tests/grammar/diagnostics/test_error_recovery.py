@@ -5,9 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.diagnostics.error_recovery import recover
-from grammar.semantics.link import words_of
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
+from grammar.syntax.source import names_in_text
 
 CELL = """&ACCESS RVP
 DEF CELL()
@@ -128,7 +128,7 @@ def test_a_line_that_is_cut_is_not_read(text: str, words: set[str]) -> None:
     """A name in it may be the beginning of one, whether a controller would read it or not."""
     found = recover(text)
     assert found.is_cut
-    assert words <= words_of(found.dropped)
+    assert words <= names_in_text(found.dropped)
     assert 1 == len(found.failures)
     assert (found.syntax is None) == (text == "DEFDAT CE")
 

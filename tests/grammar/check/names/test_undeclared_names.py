@@ -7,9 +7,9 @@ import pytest
 from grammar.check.project.framework import check
 from grammar.check.project.project_check import CheckOptions, Content, found_in_project, recheck
 from grammar.diagnostics.diagnostic import Diagnostic
-from grammar.semantics.link import File, link, words_of
+from grammar.semantics.link import File, link
 from grammar.syntax.build import read_module
-from grammar.syntax.source import Source
+from grammar.syntax.source import Source, names_in_text
 
 Agrees = Callable[..., None]
 
@@ -228,7 +228,7 @@ def test_a_damaged_list_declares_none_but_its_words(name: str, severity: str) ->
     """Of a data list that cannot be read only the words in it may be declared."""
     damaged = "DEFDAT OTHER PUBLIC\nDECL GLOBAL INT HIDDEN=\nENDDAT\n"
     cell = f"DEF CELL()\n  {name} = 1\nEND\n"
-    files = [File("R1/other.dat", None, words=words_of(damaged))]
+    files = [File("R1/other.dat", None, words=names_in_text(damaged))]
     for path, text in (("R1/System/$config.dat", CONFIG), ("R1/cell.src", cell)):
         module = read_module(text, path)
         assert not isinstance(module, list)
