@@ -50,18 +50,18 @@ def with_rules_of_lines(grammar: Grammar) -> str:
             names[text] = _fresh(grammar, f"{line}Line", names.values())
             changed[line].append((0, 0, f"{names[text]}\n    : {text}\n    ;\n\n"))
         changed[rule.name].append((*row.span, f"{names[text]}{row.operator}"))
+    lines = {line for _, _, line, _ in _rows(grammar)}  # rows call these by their names
     written_out = {
         rule.name: f"{names[text]}{row.operator}"
         for rule, row, line, end in _rows(grammar)
-        if rule is not grammar.parser_rules[0] and _is_only(rule, row)
+        if rule is not grammar.parser_rules[0] and rule.name not in lines and _is_only(rule, row)
         for text in [f"{line} {rule.source_of(end)}"]
     }
     for rule in grammar.parser_rules:
         for element in walk(rule):
             if isinstance(element, Repeat) and isinstance(element.item, Reference):
-                written_out.pop(
-                    element.item.name, None
-                )  # one suffix more would mean something else
+                # one suffix more would mean something else
+                written_out.pop(element.item.name, None)
     for rule in grammar.parser_rules:
         calls = [e for e in walk(rule) if isinstance(e, Reference) and e.name in written_out]
         changed[rule.name] += ((*e.span, written_out[e.name]) for e in calls)

@@ -93,7 +93,7 @@ def _strcopy(target: Value | None, text: Value) -> Outcome:
 
 #: The syntax of an INT and of a REAL.
 INTEGER = re.compile(r"[+-]?[0-9]+")
-DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+DECIMAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
 def integer_of(text: str) -> int | None:

@@ -132,7 +132,7 @@ class Signals:
         match path:
             case (str() as name, int() as first):
                 last = first
-            case (str() as name, int() as first, "TO", int() as last):
+            case ("$IN" | "$OUT" as name, int() as first, "TO", int() as last):
                 pass
             case _:
                 raise fault("inadmissible")

@@ -45,6 +45,12 @@ def test_rows_of_lines_have_rules() -> None:
     assert [True, False, False] == _accepts(rules, *texts)
 
 
+def test_a_row_that_is_a_line_of_another_row() -> None:
+    """Its rule stays, as the other row calls it."""
+    rules = "s : (x NL)* ;\nx : NAME | 'x' y 'y' | 'c' (y NL)* ;\ny : (x NL)+ ;"
+    assert [True, False] == _accepts(rules, "x a\ny\nc\n", "x y\n")
+
+
 def test_the_end_of_the_file_is_implied() -> None:
     """A start rule without EOF, also one that calls itself, reads to the end; lines stay."""
     for rules in ("s : NAME+ ;", "s : NAME s? ;", "s : file ;\nfile : NAME+ ;"):

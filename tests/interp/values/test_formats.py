@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from grammar.semantics.types import CHAR, INT_MAX, INT_MIN, Array, Enumeration
 from interp.values.builtins import Randomness, Surroundings, call
 from interp.values.json_form import to_json
+from interp.values.texts import real_of
 from interp.values.values import ArrayValue, Value, constant, empty, set_text, text_of
 
 GREEN = constant(Enumeration("COLOUR", ("RED", "Green")), "GREEN")
@@ -84,6 +85,11 @@ def test_what_is_written_can_be_read(whole: int, number: float, word: str) -> No
 def test_thousands_of_digits_are_no_number(letter: str) -> None:
     """They are read as little as any other number that is too large."""
     assert "FMT_ERR" == _state(_sread("9" * 5000, f"%{letter}", 1))[0]
+
+
+def test_digits_before_what_is_no_number_are_read_once() -> None:
+    """A text as long as an array may be takes no hours."""
+    assert real_of("9" * 500_000 + "x") is None
 
 
 @given(st.text("%+-#0123456789.dfsxcgeu ", max_size=12), st.lists(st.integers(), max_size=3))
