@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, pairwise, product, takewhile
 
 from grammar.notation.edits import AddAlternative, Edit, Insert, RemoveAlternative, Replace
-from grammar.notation.model import Element, Literal, Reference, Repeat, Rule, walk
+from grammar.notation.model import Element, Group, Literal, Reference, Repeat, Rule, walk
 from recovery.brackets import BRACKETS
 from recovery.forms.operand_rules import bracket_pairs
 from recovery.forms.samples import samples_of
@@ -206,7 +206,9 @@ def _is_inner(view: GrammarView, rule: Rule) -> bool:
 
 
 def _is_kind(view: GrammarView, element: Element) -> bool:
-    """Return whether an element is the type in front of a declared name."""
+    """Return whether an element is the type in front of a declared name, or ends with one."""
     words = view.words(element)
+    if isinstance(element, Group) and not words:
+        return all(_is_kind(view, e) for a in element.alternatives for e in a.elements[-1:])
     is_choice = isinstance(element, Reference) and element.name in view.rules.type_rules
     return is_choice or bool(words and words <= view.types)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
-from itertools import pairwise, takewhile
+from itertools import takewhile
 
 from grammar.notation.addresses import Address, element_at, sequences
 from grammar.notation.edits import (
@@ -172,13 +172,19 @@ def named_arguments(view: GrammarView) -> Iterator[InferredStep]:
     ``TRIGGER WHEN DISTANCE=0 DELAY=0 DO A`` has two, so ``TRIGGER … DO A PRIO=1`` may follow.
     """
     for rule, number, elements in view.lines():
-        named: dict[str, set[str]] = defaultdict(set)
-        for word, following in pairwise(elements):
-            if view.words(word) <= view.reserved:
-                named[sign_of(following)] |= view.words(word)
+        named: dict[str, set[frozenset[str]]] = defaultdict(set)
+        for place, element in enumerate(elements):
+            begun: Sequence[Sequence[Element]] = [elements[place:]]
+            if isinstance(element, Reference) and not element.is_token and not view.words(element):
+                begun = [a.elements for a in view.grammar.by_name[element.name].alternatives]
+            pairs = [(view.words(e[0]), sign_of(e[1])) for e in begun if len(e) > 1]
+            for sign in {sign for _, sign in pairs}:
+                words = frozenset[str]().union(*(some for some, same in pairs if same == sign))
+                if words and view.lexer.name not in words:  # they may be names elsewhere
+                    named[sign].add(words)
         last = {sign_of(e) for e in walk(elements[-1])}
-        for sign, words in named.items():
-            if sign and len(words) > 1 and sign not in last:
+        for sign, places in named.items():
+            if sign and len(places) > 1 and sign not in last and view.rules.widest:
                 name = view.rules.names or view.lexer.name
                 text = f"({name} {sign} {view.rules.widest})?"
                 edits = (Insert(rule.name, (number, len(elements) + 1), text),)

@@ -235,6 +235,27 @@ def test_what_is_alike_goes_on_alike(title: str, text: str) -> None:
     assert (False, True) == tuple(Recognizer(g).accepts(text) for g in (grammar, folded))
 
 
+_ARGUMENTS = """grammar Toy;
+program : (line NEWLINE)* EOF ;
+line
+    : MOVE NAME place SLOW '=' any
+    | TURN name place
+    ;
+place : FAST '=' any | FIX '=' any ;
+any : NUMBER | OPEN any ;
+name : NAME | SLOW ;
+"""
+
+
+def test_words_that_name_arguments() -> None:
+    """They may be in a rule of their own, and names elsewhere; two are needed in a line."""
+    grammar = read(_declared(_ARGUMENTS))
+    (fold,) = (f for f in folds_of(GrammarView(Recognizer(grammar), ())) if "argument" in f.title)
+    after = Recognizer(apply(grammar, fold.edits))
+    texts = ("MOVE A FAST=1 SLOW=2 NEW=3\n", "TURN A FAST=1 NEW=3\n")
+    assert [True, False] == list(map(after.accepts, texts))
+
+
 def test_a_fold_is_offered_once(grammar: Grammar, folds: dict[str, InferredStep]) -> None:
     """What has been folded is not to be folded again, so that folding comes to an end."""
     again = [
