@@ -152,7 +152,7 @@ class MotionBuilder:
                 kind, criteria = _BROUGHT[kind], ()
             self._refuse_start(request.at, kind)
         snapshot = self._variables.snapshot(request.values)
-        self._check_frames(snapshot, target)
+        self._check_frames(snapshot, kind, target)
         settings = self._settings(snapshot)
         auxiliary = None if request.auxiliary is None else target_of(request.auxiliary)
         angle = request.angle
@@ -252,7 +252,7 @@ class MotionBuilder:
     ) -> SplinePart:
         snapshot = self._variables.snapshot((*block.values, *item.values))
         target = target_of(item.target)
-        self._check_frames(snapshot, target)
+        self._check_frames(snapshot, item.kind, target)
         kind, _, suffix = item.kind.partition("_")
         return SplinePart(
             kind,
@@ -267,9 +267,9 @@ class MotionBuilder:
         )
 
     @staticmethod
-    def _check_frames(snapshot: Snapshot, target: Target) -> None:
+    def _check_frames(snapshot: Snapshot, kind: str, target: Target) -> None:
         """Check that a Cartesian motion has a tool and a base [MOT-15]."""
-        if not set("XYZABC") & set(target):
+        if kind in AXIS_MOTIONS and not set("XYZABC") & set(target):
             return
         if pose_of(snapshot["$TOOL"]) is None:
             raise message_fault(1419)

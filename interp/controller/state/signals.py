@@ -136,6 +136,6 @@ class Signals:
                 pass
             case _:
                 raise fault("inadmissible")
-        if not 1 <= first <= last <= self._sizes[name]:
+        if not 1 <= first <= last <= self._sizes[name] or last - first >= 32:
             raise fault("index")
         return name, range(first, last + 1)
