@@ -99,10 +99,10 @@ def heads(view: GrammarView) -> Iterator[InferredStep]:
             ahead = list(takewhile(lambda e: _modifiers(view, e), line))
             choices = [sorted(_modifiers(view, e)) + [""] * view.is_ending(e) for e in ahead]
             if ahead and len(line) > len(ahead) + 1:
-                heads = {tuple(filter(None, words)) for words in product(*choices)}
-                found[view.source(rule.name, line[len(ahead) :])].append((number, heads))
+                ways = {tuple(filter(None, words)) for words in product(*choices)}
+                found[view.source(rule.name, line[len(ahead) :])].append((number, ways))
         for rest, having in found.items():
-            every = set[tuple[str, ...]]().union(*(heads for _, heads in having))
+            every = set[tuple[str, ...]]().union(*(ways for _, ways in having))
             pairs = {pair for head in every for pair in combinations(head, 2)}
             words = sorted(
                 {w for h in every for w in h}, key=lambda w: sum(w == b for _, b in pairs)
