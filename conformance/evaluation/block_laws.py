@@ -63,6 +63,11 @@ class _Block:
         return ways
 
     @cached_property
+    def passed(self) -> Array:
+        """The times in s at the start, and at the end of each segment."""
+        return np.interp(self.ends, self.ways, self.times)
+
+    @cached_property
     def speeds(self) -> Array:
         """The speeds in mm/s between its points, without the first and the last piece."""
         return change_rates(self.one.path.times[self.one.rows], self.ways[1:-1, None])[:, 0]
@@ -93,8 +98,7 @@ def _time_block_violations(block: _Block) -> Iterator[Violation]:
 
     A part may take longer that uses the programmed speed or acceleration.
     """
-    motion, times = block.one.motion, block.times
-    passed = np.interp(block.ends, block.ways, times)
+    motion, times, passed = block.one.motion, block.times, block.passed
     gains = change_rates(block.one.path.times[block.one.rows][1:], block.speeds[:, None])[:, 0]
     for begin, end, wanted in _shares_of_time(motion):
         took = passed[end] - passed[begin]
@@ -183,16 +187,15 @@ def _stops(block: _Block) -> Iterator[Violation]:
             law = "within a block the arm stands at corners and at STOP WHEN PATH only"
             yield block.one.broken(law, f"it stands {block.ways[row]:.3f} mm behind its start")
             return
-    passed = np.interp(block.ends, block.ways, block.times)
     between = block.times[2:-1]
     if len(wanted) > len(corners):
         return
     for number, end in enumerate(block.ends[1:-1], 1):
         sides = [
             block.speeds[(between > start) & (between <= stop)].max(initial=0.0)
-            for start, stop in pairwise(passed[number - 1 : number + 2])
+            for start, stop in pairwise(block.passed[number - 1 : number + 2])
         ]
-        nearest = int(np.searchsorted(between, passed[number]))
+        nearest = int(np.searchsorted(between, block.passed[number]))
         slowest = float(block.speeds[max(nearest - 1, 0) : nearest + 2].min(initial=math.inf))
         if end not in corners and slowest < _KEPT * min(sides):
             law = "within a block the arm keeps moving where its path goes straight on"

@@ -44,18 +44,17 @@ def with_rules_of_lines(grammar: Grammar) -> str:
         return grammar.text
     changed: dict[str, list[Splice]] = defaultdict(list)
     names: dict[str, str] = {}
-    for rule, row, line, end in _rows(grammar):
-        text = f"{line} {rule.source_of(end)}"
+    rows = [(r, row, line, f"{line} {r.source_of(end)}") for r, row, line, end in _rows(grammar)]
+    for rule, row, line, text in rows:
         if text not in names:
             names[text] = _fresh(grammar, f"{line}Line", names.values())
             changed[line].append((0, 0, f"{names[text]}\n    : {text}\n    ;\n\n"))
         changed[rule.name].append((*row.span, f"{names[text]}{row.operator}"))
-    lines = {line for _, _, line, _ in _rows(grammar)}  # rows call these by their names
+    lines = {line for _, _, line, _ in rows}  # rows call these by their names
     written_out = {
         rule.name: f"{names[text]}{row.operator}"
-        for rule, row, line, end in _rows(grammar)
+        for rule, row, _, text in rows
         if rule is not grammar.parser_rules[0] and rule.name not in lines and _is_only(rule, row)
-        for text in [f"{line} {rule.source_of(end)}"]
     }
     for rule in grammar.parser_rules:
         for element in walk(rule):

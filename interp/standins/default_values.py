@@ -20,11 +20,9 @@ from grammar.semantics.types import (
     is_axes,
     is_cartesian,
 )
+from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
 from interp.robot.models.stand_in import Places
 
-ROBOT_AXES: Final = tuple(f"A{number}" for number in range(1, 7))
-EXTERNAL_AXES: Final = frozenset({f"E{number}" for number in range(1, 7)})
-COMPONENTS: Final = tuple("XYZABC")
 #: Of a structure of arrays, whose elements nothing sets: it cannot be written.
 NOTHING: Final = "{}"
 
@@ -63,11 +61,11 @@ class DefaultValues:
     def _place(self, type_: Structure, name: str) -> Iterator[str]:
         self.placed.add(re.split(r"\W", name)[0])
         if is_axes(type_):
-            place = zip(ROBOT_AXES, self._places.axes(name), strict=True)
+            place = zip(AXIS_NAMES, self._places.axes(name), strict=True)
         else:
-            place = zip(COMPONENTS, self._places.pose(name), strict=True)
+            place = zip("XYZABC", self._places.pose(name), strict=True)
         yield from (f"{part} {value}" for part, value in place)
-        externals = EXTERNAL_AXES & {one.name.upper() for one in type_.members}
+        externals = {one.name.upper() for one in type_.members}.intersection(EXTERNAL_NAMES)
         yield from (f"{part} 0.0" for part in sorted(externals))
 
     def _components(self, type_: Structure, name: str) -> Iterator[str]:

@@ -29,17 +29,13 @@ from grammar.semantics.types import (
     Type,
     is_axes,
 )
-from interp.standins.default_values import (
-    COMPONENTS,
-    EXTERNAL_AXES,
-    NOTHING,
-    ROBOT_AXES,
-    DefaultValues,
-)
+from interp.robot.kinematics.machine_data import AXIS_NAMES, EXTERNAL_NAMES
+from interp.standins.default_values import NOTHING, DefaultValues
 from interp.standins.uses import DataUse
 
-_AXES: Final = frozenset(ROBOT_AXES)
-_FRAME: Final = frozenset(COMPONENTS)
+_AXES: Final = frozenset(AXIS_NAMES)
+_EXTERNAL_AXES: Final = frozenset(EXTERNAL_NAMES)
+_FRAME: Final = frozenset("XYZABC")
 _TEXT_LENGTH: Final = 80
 #: Elements in each dimension, by how many there are; more where an index is a larger number.
 _ELEMENTS: Final = {1: 32, 2: 8, 3: 4}
@@ -142,11 +138,11 @@ class DerivedDeclarations:
             return self._enumeration(name, use)
         members = set(use.members)
         if members:
-            if members <= _AXES | EXTERNAL_AXES:
+            if members <= _AXES | _EXTERNAL_AXES:
                 return self._named("E6AXIS", name)
             if members <= _FRAME and not use.motions:
                 return self._named("FRAME", name)
-            if members <= _FRAME | EXTERNAL_AXES | {"S", "T"}:
+            if members <= _FRAME | _EXTERNAL_AXES | {"S", "T"}:
                 return self._named("E6POS", name)
             made = self._made(name, "T")
             return TypedValue(made, self._structure(made, use))
