@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import random
-import sys
-import tempfile
 import time
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import asdict
-from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
@@ -19,8 +15,8 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from krl.commands.bench.growth_entries import ENTRIES, PROGRAM
-from krl.errors import BAD_INPUT, FINE, InputError, run
+from krl.commands.bench.growth_entries import ENTRIES
+from krl.errors import FINE, InputError
 from krl.terminal.options import JobsOption, JsonOption, all_cores
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
@@ -31,7 +27,6 @@ if TYPE_CHECKING:
     from support.measure.cost_by_size import Growth
 
 _AIM: Final = 1.15
-_SMALLEST: Final = 8_000
 
 
 def growth(
@@ -78,10 +73,13 @@ def growth(
     tasks = [task for task in tasks if task not in known]
     random.Random(seed).shuffle(tasks)
 
+    from krl.commands.bench.growth_calls import measured_calls
+    from support.measure.isolated import call_isolated
+
     def one(task: tuple[str, str]) -> Growth | None:
         if minutes is not None and time.monotonic() - begun > minutes * 60:
             raise TimeoutError
-        return _isolated(*task, largest)
+        return call_isolated(measured_calls, *task, largest * 1_000)
 
     with (
         progress_bar("measuring", len(tasks)) as advance,
@@ -116,75 +114,6 @@ def _chosen(option: str, wanted: list[str] | None, known: Mapping[str, object]) 
     if unknown := set(wanted or ()) - set(known):
         raise InputError(f"{option} {min(unknown)}: not one of {', '.join(known)}")
     return [name for name in known if not wanted or name in wanted]
-
-
-def _isolated(entry: str, shape: str, largest: int) -> Growth | None:
-    from support.measure.isolated import call_isolated
-
-    return call_isolated(_measure, entry, shape, largest)
-
-
-class _Unmade(Exception):
-    """The input of a command cannot be made from a shape."""
-
-
-def _measure(entry: str, shape: str, largest: int) -> Growth | None:
-    from krl.commands.app import app
-    from support.measure.cost_by_size import measure_growth
-
-    chosen = ENTRIES[entry]
-    with tempfile.TemporaryDirectory() as place, Path(os.devnull).open("w") as nowhere:
-        for stream in (1, 2):  # also output that bypasses Python
-            os.dup2(nowhere.fileno(), stream)
-        root = Path(place)
-        numbers = count()
-
-        def prepare(size: int) -> list[str]:
-            # a folder for each, because results cached by path would distort the measurement, and a
-            # program is read with all files beside and below it
-            folder = root / str(next(numbers))
-            for name in ("given", "less", "small"):
-                (folder / name).mkdir(parents=True)
-            file = chosen.inputs[shape](folder / "given", size)
-            small, other = folder / "small" / "small.src", folder / "less" / file.name
-            small.write_text(PROGRAM, encoding="ascii")
-            if "{other}" in chosen.words:
-                lines = file.read_text(encoding="ascii").splitlines(keepends=True)
-                kept = (line for number, line in enumerate(lines) if number % 7 != 3)
-                other.write_text("".join(kept), encoding="ascii")
-            places = {
-                "file": file,
-                "other": other,
-                "small": small,
-                "out": folder / "out",
-                "printed": folder / "printed",
-            }
-
-            def filled(words: str) -> list[str]:
-                return [word.format(**places) for word in words.split()]
-
-            for words in chosen.before:
-                with places["printed"].open("w") as printed:
-                    os.dup2(printed.fileno(), 1)
-                    status = krl(filled(words))
-                    sys.stdout.flush()
-                    os.dup2(nowhere.fileno(), 1)
-                if status == BAD_INPUT:
-                    raise _Unmade
-            said = folder / "said"
-            said.write_bytes(chosen.said(file))
-            with said.open("rb") as stream:
-                os.dup2(stream.fileno(), 0)
-            sys.stdin = os.fdopen(0, encoding="utf-8", closefd=False)
-            return filled(chosen.words)
-
-        def krl(words: list[str]) -> int:
-            return run(app(*words), words)
-
-        try:
-            return measure_growth(prepare, krl, _SMALLEST, largest * 1_000)
-        except _Unmade:
-            return None
 
 
 def _row(entry: str, shape: str, found: Growth | None) -> dict[str, Any]:
