@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.commands.recover_auto import recover_auto
+from krl.commands.recover_auto import AutoOptions, recover_auto
 from krl.construct_ledger import expected_errors
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.extras import need
@@ -125,13 +125,12 @@ def recover(
     roots = corpus_or_ours(paths)
     check_targets(out, json_file)
     if auto:
-        return recover_auto(
-            roots,
-            grammar,
-            out,
-            json_file,
-            negatives,
-            target,
+        options = AutoOptions(
+            grammar=grammar,
+            out=out,
+            json_file=json_file,
+            negatives=negatives,
+            target=target,
             without=without,
             hold_out=hold_out,
             seed=seed,
@@ -139,6 +138,7 @@ def recover(
             resume=resume,
             suffix=suffix,
         )
+        return recover_auto(roots, options)
     if hold_out or without or seed is not None or resume or strike or target or suffix:
         raise InputError(
             "--hold-out, --without, --seed, --target, --suffix, --resume and --strike belong to "

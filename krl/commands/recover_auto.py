@@ -1,8 +1,8 @@
 """`krl recover --auto`: extends a grammar automatically, round by round."""
 
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,8 +16,9 @@ from reports.rendering.number_format import counted
 if TYPE_CHECKING:
     from grammar.notation.edits import Edit
     from grammar.notation.model import Grammar
-    from recovery.induction.growth_folder import GrowthFolder
     from recovery.induction.induced_ledger import InducedLedger
+    from recovery.induction.induction_folder import InductionFolder, InductionSettings
+    from recovery.induction.language import CorpusFile
     from recovery.induction.rounds import Induction
     from recovery.induction.target_comparison import Share
     from recovery.negatives.negatives import Negative
@@ -28,33 +29,48 @@ _NEGATIVES = 1_500
 _SEED = 11
 
 
-def recover_auto(
-    roots: Sequence[Path],
-    grammar: Path | None,
-    out: Path,
-    json_file: Path | None,
-    negatives: Path | None,
-    target: Path | None,
-    *,
-    without: int,
-    hold_out: float | None,
-    seed: int | None,
-    strike: Sequence[str],
-    resume: bool,
-    suffix: str,
-) -> int:
-    """Grow a grammar from a corpus and write it, its ledger, its record and its page to ``out``.
+@dataclass(frozen=True, slots=True)
+class AutoOptions:
+    """The options of `krl recover --auto`; one that is ``None``, empty or 0 is not given."""
 
-    It starts from ``grammar``, or from the restrictive start, or from the grammar in force less
-    ``without`` constructs. ``suffix`` is the file extension for languages other than KRL.
-    Everything is written after each round, so that an interruption loses no more than one. A growth
-    is continued with the settings that ``out`` holds, the folder of ``negatives`` and ``target``
-    too. At the end the grown grammar is compared with ``target``.
+    grammar: Path | None
+    out: Path
+    json_file: Path | None
+    negatives: Path | None
+    target: Path | None
+    without: int
+    hold_out: float | None
+    seed: int | None
+    strike: Sequence[str]
+    resume: bool
+    suffix: str
+
+    @property
+    def is_continued(self) -> bool:
+        """Whether it goes on with what is in ``out``."""
+        return self.resume or bool(self.strike)
+
+    def check(self) -> None:
+        """Raise `InputError` if options contradict one another."""
+        if self.suffix and not (self.grammar or self.is_continued):
+            raise InputError(
+                f"--suffix {self.suffix}: a language other than KRL needs --grammar FILE"
+            )
+        if self.without and (self.grammar or self.is_continued):
+            raise InputError("--without starts from the grammar in force: give it alone")
+        if not 0 <= (self.hold_out or 0) < 1:
+            raise InputError(f"--hold-out {self.hold_out:g}: not from 0 to less than 1")
+
+
+def recover_auto(roots: Sequence[Path], options: AutoOptions) -> int:
+    """Infer a grammar from a corpus and write it, its ledger, its record and its page.
+
+    It starts from a given grammar, or from the restrictive start, or from the grammar in force less
+    some constructs. Everything is written after each round, so that an interruption loses no more
+    than one. A run is continued with the settings that its folder holds. At the end the inferred
+    grammar is compared with the target.
     """
-    from grammar.parser.lexer import ABSENT, lexer_of
-    from recovery.induction.corpus_lines import drawn_origins, held_out
-    from recovery.induction.growth_folder import GrowthFolder, GrowthFolderError
-    from recovery.induction.induced_ledger import InducedLedger
+    from recovery.induction.induction_folder import InductionFolder, InductionFolderError
     from recovery.induction.language import KRL, language_of
     from recovery.induction.rounds import Induction
     from recovery.induction.target_comparison import compared
@@ -62,156 +78,176 @@ def recover_auto(
     from recovery.negatives.negatives import NegativeSet
 
     began = time.monotonic()
-    is_continued = resume or bool(strike)
-    _check(grammar, without, hold_out, suffix, is_continued=is_continued)
-    given = {"hold_out": hold_out, "seed": seed, "suffix": suffix or None}
-    folder = GrowthFolder(out)
-    with expected_errors(), as_input_errors(GrowthFolderError):
-        known = folder.settings() if is_continued else {}
-        settings = _settings(given, known, out)
-        if is_continued:
-            ledger, struck = _ledger_so_far(grammar, folder, strike)
-        else:
-            start, names = _start(grammar, without, settings["seed"])
-            settings |= names
-            ledger, struck = InducedLedger(start, start), []
-        rejected, goal, read = _negatives_and_target(negatives, target, known, out)
-        settings |= read
-        language = language_of(settings["suffix"]) if settings["suffix"] else KRL
+    options.check()
+    folder = InductionFolder(options.out)
+    with expected_errors(), as_input_errors(InductionFolderError):
+        start = _continued(options, folder) if options.is_continued else _begun(options)
+        written_negatives, target, settings = _negatives_and_target(options, start.settings)
+        language = language_of(settings.suffix) if settings.suffix else KRL
         files = language.files(roots)
-    lexer = lexer_of(ledger.start)
-    for kind, what in ((lexer.line_kind, "line ends"), (lexer.name_kind, "names")):
-        if kind == ABSENT:
-            raise InputError(
-                f"the grammar to start from has no token of {what}, which growing needs"
-            )
-    if not files:
-        raise InputError("no readable source was found")
-    if not is_continued:
-        settings["held_out"] = drawn_origins(files, settings["hold_out"], settings["seed"])
-    shown, held = held_out(files, settings["held_out"])
-    if settings["hold_out"] and not held:
-        raise InputError(
-            f"--hold-out {settings['hold_out']:g} holds no file out: there are too few origins"
-        )
-    if not shown:
-        raise InputError("no file is left to learn from: hold out less")
+    ledger = start.ledger
+    _check_tokens(ledger.start)
+    shown, held, settings = _parted(files, settings, is_continued=options.is_continued)
     generated = evenly(language.negatives(4 * _NEGATIVES, _SEED), _NEGATIVES)
-    every = NegativeSet((*rejected, *generated))
+    negatives = NegativeSet((*written_negatives, *generated))
     induction = Induction(
-        ledger.grammar, shown, held, every, language=language, struck=struck, start=ledger.start
+        ledger.grammar,
+        shown,
+        held,
+        negatives,
+        language=language,
+        struck=start.struck,
+        start=ledger.start,
     )
-    written = _Output(ledger, struck, folder, json_file, settings, began)
-    is_finished = _grow(induction, written)
-    reached = None
-    if goal:
+    written = _Output(ledger, start.struck, folder, options.json_file, settings, began)
+    is_finished = _run(induction, written)
+    reached: dict[str, Any] | None = None
+    if target:
         reached = {
-            "name": Path(settings["target_path"]).name,
-            **compared(ledger.grammar, goal, shown, held, language),
+            "name": Path(settings.target_path).name,
+            **compared(ledger.grammar, target, shown, held, language),
         }
     page = written.write(is_finished, reached)
-    typer.echo(f"{out / 'grammar.g4'}: {counted(len(ledger.constructs), 'step')}; {page}")
+    where = options.out / "grammar.g4"
+    typer.echo(f"{where}: {counted(len(ledger.constructs), 'step')}; {page}")
     return FINE
 
 
-def _check(
-    grammar: Path | None, without: int, hold_out: float | None, suffix: str, *, is_continued: bool
-) -> None:
-    """Raise `InputError` if options contradict one another."""
-    if suffix and not (grammar or is_continued):
-        raise InputError(f"--suffix {suffix}: a language other than KRL needs --grammar FILE")
-    if without and (grammar or is_continued):
-        raise InputError("--without starts from the grammar in force: give it alone")
-    if not 0 <= (hold_out or 0) < 1:
-        raise InputError(f"--hold-out {hold_out:g}: not from 0 to less than 1")
+# ------------------------------------------------------------------------------- where to start
+
+
+@dataclass(frozen=True, slots=True)
+class _Start:
+    """Where a run starts: steps so far, edits that must not be taken, and its settings."""
+
+    ledger: "InducedLedger"
+    struck: "Sequence[tuple[Edit, ...]]"
+    settings: "InductionSettings"
+
+
+def _begun(options: AutoOptions) -> _Start:
+    """Return the beginning of a new run, with the settings as given."""
+    from grammar.notation.foreign import read_foreign
+    from grammar.notation.g4 import read_file
+    from grammar.notation.generate import GRAMMAR
+    from recovery.induction.induced_ledger import InducedLedger, without_some
+    from recovery.induction.induction_folder import InductionSettings
+    from recovery.ledger.ledger import Ledger
+
+    file = options.grammar or GRAMMAR.with_name("preliminary.g4")
+    start = read_file(file, read_foreign)
+    settings = replace(InductionSettings(start=file.name), **_given(options))
+    if options.without:
+        accepted = Ledger.read(GRAMMAR.with_name("constructs")).accepted
+        if options.without > len(accepted):
+            raise InputError(f"--without {options.without}: there are {len(accepted)} constructs")
+        start, gone = without_some(start, accepted, options.without, settings.seed)
+        for construct in gone:
+            typer.echo(f"taken out: {construct.id} {construct.title}")
+        name, ids = f"KRL.g4 less {len(gone)} constructs", tuple(one.id for one in gone)
+        settings = replace(settings, start=name, without=ids)
+    return _Start(InducedLedger(start, start), (), settings)
+
+
+def _continued(options: AutoOptions, folder: "InductionFolder") -> _Start:
+    """Return where a run goes on, with its settings.
+
+    Raises `InputError` if an option differs from what the run was begun with.
+    """
+    from grammar.notation.foreign import read_foreign
+    from grammar.notation.g4 import read_file
+
+    settings = folder.settings()
+    for name, value in _given(options).items():
+        if value != (known := getattr(settings, name)):
+            option = name.replace("_", "-")
+            raise InputError(f"--{option} {value}: {folder.path} was begun with {known or 'none'}")
+    ledger, struck, gone = folder.continued(options.strike)
+    if options.grammar and read_file(options.grammar, read_foreign).text != ledger.start.text:
+        raise InputError(
+            f"--grammar {options.grammar}: {folder.path} was begun with another grammar"
+        )
+    for construct in gone:
+        typer.echo(f"struck out: {construct.id} {construct.title}")
+    return _Start(ledger, struck, settings)
+
+
+def _given(options: AutoOptions) -> dict[str, Any]:
+    """Return the settings that are given as options."""
+    given = {"hold_out": options.hold_out, "seed": options.seed, "suffix": options.suffix or None}
+    return {name: value for name, value in given.items() if value is not None}
 
 
 def _negatives_and_target(
-    negatives: Path | None, target: Path | None, known: Mapping[str, Any], out: Path
-) -> "tuple[Sequence[Negative], Grammar | None, dict[str, Any]]":
-    """Return the written negatives, the grammar to compare with, and both as settings.
+    options: AutoOptions, settings: "InductionSettings"
+) -> "tuple[Sequence[Negative], Grammar | None, InductionSettings]":
+    """Return the written negatives, the grammar to compare with, and the settings with both.
 
-    What is not given is that of the ``known`` settings of a growth in ``out``. What that was begun
-    without may be given later. Raises `InputError` if it was begun with another text.
+    What is not given is that of the ``settings``. What a run was begun without may be given later.
+    Raises `InputError` if it was begun with another text.
     """
     from grammar.notation.foreign import read_foreign
     from grammar.notation.g4 import read_file
     from recovery.negatives.negatives import load
     from support.files.decode import digest
 
-    folder = negatives or Path(known.get("negatives_path") or "")
-    file = target or Path(known.get("target_path") or "")
-    rejected = load(folder) if folder.name else ()
-    goal = read_file(file, read_foreign) if file.name else None
-    settings: dict[str, Any] = {}
+    folder = options.negatives or Path(settings.negatives_path)
+    file = options.target or Path(settings.target_path)
+    negatives = load(folder) if folder.name else ()
+    target = read_file(file, read_foreign) if file.name else None
+    found: dict[str, Any] = {}
     for option, path, text in (
-        ("negatives", folder, "\0".join(f"{n.phase} {n.line} {n.text}" for n in rejected)),
-        ("target", file, goal.text if goal else ""),
+        ("negatives", folder, "\0".join(f"{n.phase} {n.line} {n.text}" for n in negatives)),
+        ("target", file, target.text if target else ""),
     ):
-        found = digest(text.encode()) if path.name else ""
-        if known.get(f"{option}_sha256") not in (None, "", found):
-            raise InputError(f"--{option} {path}: {out} was begun with another")
-        settings[f"{option}_path"] = str(path) if path.name else ""
-        settings[f"{option}_sha256"] = found
-    return rejected, goal, settings
+        name = f"{option}_sha256"
+        found[f"{option}_path"] = str(path) if path.name else ""
+        found[name] = digest(text.encode()) if path.name else ""
+        if getattr(settings, name) not in ("", found[name]):
+            raise InputError(f"--{option} {path}: {options.out} was begun with another")
+    return negatives, target, replace(settings, **found)
 
 
-def _settings(given: Mapping[str, Any], known: Mapping[str, Any], out: Path) -> dict[str, Any]:
-    """Return the settings of a growth: those ``known`` of one in ``out``, then those given.
+def _check_tokens(start: "Grammar") -> None:
+    """Raise `InputError` if a grammar lacks tokens on which the inference rests."""
+    from grammar.parser.lexer import ABSENT, lexer_of
 
-    ``None`` is not given. Raises `InputError` if one that is given differs from the known one.
+    lexer = lexer_of(start)
+    for kind, what in ((lexer.line_kind, "line ends"), (lexer.name_kind, "names")):
+        if kind == ABSENT:
+            raise InputError(
+                f"the grammar to start from has no token of {what}, which growing needs"
+            )
+
+
+def _parted(
+    files: "Sequence[CorpusFile]", settings: "InductionSettings", *, is_continued: bool
+) -> "tuple[Sequence[CorpusFile], Sequence[CorpusFile], InductionSettings]":
+    """Return the files to learn from, those held out, and the settings with the origins of these.
+
+    Origins are drawn where a run begins. Raises `InputError` if one of the parts lacks files.
     """
-    from recovery.induction.growth_folder import SETTINGS
+    from recovery.induction.corpus_lines import drawn_origins, held_out
 
-    given = {name: value for name, value in given.items() if value is not None}
-    for name, value in given.items():
-        if value != known.get(name, value):
-            option = name.replace("_", "-")
-            raise InputError(f"--{option} {value}: {out} was begun with {known[name] or 'none'}")
-    return {**SETTINGS, **given, **known}
-
-
-def _start(grammar: Path | None, without: int, seed: int) -> "tuple[Grammar, dict[str, Any]]":
-    """Return the grammar to start from, and as settings its name and what was taken out of it."""
-    from grammar.notation.foreign import read_foreign
-    from grammar.notation.g4 import read_file
-    from grammar.notation.generate import GRAMMAR
-    from recovery.induction.induced_ledger import without_some
-    from recovery.ledger.ledger import Ledger
-
-    file = grammar or GRAMMAR.with_name("preliminary.g4")
-    start = read_file(file, read_foreign)
-    if not without:
-        return start, {"start": file.name}
-    accepted = Ledger.read(GRAMMAR.with_name("constructs")).accepted
-    if without > len(accepted):
-        raise InputError(f"--without {without}: there are {len(accepted)} constructs")
-    less, gone = without_some(start, accepted, without, seed)
-    for construct in gone:
-        typer.echo(f"taken out: {construct.id} {construct.title}")
-    ids = tuple(construct.id for construct in gone)
-    return less, {"start": f"KRL.g4 less {len(gone)} constructs", "without": ids}
+    if not files:
+        raise InputError("no readable source was found")
+    if not is_continued:
+        drawn = drawn_origins(files, settings.hold_out, settings.seed)
+        settings = replace(settings, held_out=drawn)
+    shown, held = held_out(files, settings.held_out)
+    if settings.hold_out and not held:
+        raise InputError(
+            f"--hold-out {settings.hold_out:g} holds no file out: there are too few origins"
+        )
+    if not shown:
+        raise InputError("no file is left to learn from: hold out less")
+    return shown, held, settings
 
 
-def _ledger_so_far(
-    grammar: Path | None, folder: "GrowthFolder", strike: Sequence[str]
-) -> "tuple[InducedLedger, list[tuple[Edit, ...]]]":
-    """Return where to continue, and the edits that must not be taken again.
-
-    Raises `InputError` if ``grammar`` is not the one that the growth began with.
-    """
-    from grammar.notation.foreign import read_foreign
-    from grammar.notation.g4 import read_file
-
-    ledger, struck, gone = folder.continued(strike)
-    if grammar and read_file(grammar, read_foreign).text != ledger.start.text:
-        raise InputError(f"--grammar {grammar}: {folder.path} was begun with another grammar")
-    for construct in gone:
-        typer.echo(f"struck out: {construct.id} {construct.title}")
-    return ledger, struck
+# ---------------------------------------------------------------------------------- the rounds
 
 
-def _grow(induction: "Induction", written: "_Output") -> bool:
+def _run(induction: "Induction", written: "_Output") -> bool:
     """Write what each round accepts; return whether nothing more is worth taking."""
     ledger = written.ledger
     try:
@@ -236,9 +272,9 @@ class _Output:
 
     ledger: "InducedLedger"
     struck: "Sequence[Sequence[Edit]]"
-    folder: "GrowthFolder"
+    folder: "InductionFolder"
     json_file: Path | None
-    settings: Mapping[str, Any]
+    settings: "InductionSettings"
     began: float  # by the monotonic clock, in s
 
     def write(self, is_finished: bool = False, reached: dict[str, Any] | None = None) -> Path:

@@ -7,16 +7,18 @@ changed.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib import metadata
 from typing import Any
 
 from recovery.induction.induced_ledger import InducedLedger
+from recovery.induction.induction_folder import InductionSettings
 
 
 def record_of(
     ledger: InducedLedger,
-    settings: Mapping[str, Any],
+    settings: InductionSettings,
     *,
     seconds: float,
     is_finished: bool,
@@ -27,7 +29,7 @@ def record_of(
     ``target`` compares the result with another grammar (`recovery.induction.target_comparison`).
     """
     record: dict[str, Any] = {
-        **settings,
+        **asdict(settings),
         "start_sha256": ledger.start.sha256,
         "rounds": ledger.rounds,
         "finished": is_finished,

@@ -1,4 +1,4 @@
-"""Rounds of a growth: read the corpus, infer edits from failures, keep those that hold, repeat.
+"""Rounds of an induction: read the corpus, infer edits from failures, keep those that hold, repeat.
 
 A round accepts several edits. Each is first tried on the lines from which it was inferred; then the
 most useful ones are examined one by one. Edits are refused if they have too little evidence, accept

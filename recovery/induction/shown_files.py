@@ -1,4 +1,4 @@
-"""The shown files of a growth: how they read under a grammar, and what a step would lose."""
+"""The shown files: how they read under a grammar, and what a step would lose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The steps of a growth: accepted and refused edits, their evidence, and how files then parse."""
+"""Steps of an induction: accepted and refused edits, their evidence, and how files parse."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class InferredStep:
 
 @dataclass(frozen=True, slots=True)
 class AcceptedStep:
-    """A step of the growth: edits, reason and evidence."""
+    """A step of the induction: edits, reason and evidence."""
 
     title: str
     edits: tuple[Edit, ...]

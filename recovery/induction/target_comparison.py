@@ -33,7 +33,7 @@ class Comparison(TypedDict):
     ``held_within_reach``: the same for held-out files without any pair of adjacent kinds of token
     of the target that no shown file has; files beyond that require a guess. ``held_known_words``:
     the same for held-out files without a word of ``words_not_shown`` that the grown grammar lacks,
-    too: no growth can read more. ``words_not_shown``: reserved words of the target in held-out
+    too: no induction can read more. ``words_not_shown``: reserved words of the target in held-out
     files that no shown file has. ``sentences_rejected``: how many of its random sentences the
     target rejects. ``negatives_accepted``: how many generated negatives it accepts.
     """

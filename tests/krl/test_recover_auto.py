@@ -199,7 +199,7 @@ def test_an_interrupted_run_keeps_what_was_done(
         ("--target", str(PRELIMINARY), f"--target {PRELIMINARY}: {{}} was begun with another"),
     ],
 )
-def test_a_growth_is_continued_with_its_own_options(
+def test_a_run_is_continued_with_its_own_options(
     corpus: Path,
     out: Path,
     option: str,
@@ -216,7 +216,7 @@ def test_a_growth_is_continued_with_its_own_options(
 def test_a_record_that_is_none(
     corpus: Path, out: Path, tmp_path: Path, text: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What is no record of a growth is named in one line."""
+    """What is no record of a run is named in one line."""
     shutil.copy(out / "start.g4", tmp_path)
     (tmp_path / "auto.json").write_text(text)
     assert auto(corpus, "--out", tmp_path, "--resume") == 2
@@ -262,7 +262,7 @@ def test_a_start_without_line_ends(
     assert "no token of line ends" in capsys.readouterr().err
 
 
-def test_negatives_are_the_same_when_a_growth_goes_on(
+def test_negatives_are_the_same_when_a_run_goes_on(
     corpus: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """They need not be given again, and must not have changed."""

@@ -7,10 +7,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Final
 
 from grammar.notation.edits import Edit, from_data, to_data
 from grammar.notation.g4 import read_file
@@ -21,44 +20,53 @@ from recovery.ledger.ledger import Ledger, in_force
 from support.files.atomic_write import write_atomic
 from support.files.untrusted import json_of, read_bytes
 
-#: The settings of a growth, with those of a growth that has none.
-SETTINGS: Final[Mapping[str, Any]] = {
-    "start": "",
-    "without": (),
-    "held_out": (),
-    "hold_out": 0.0,
-    "seed": 1,
-    "suffix": "",
-    "negatives_path": "",
-    "negatives_sha256": "",
-    "target_path": "",
-    "target_sha256": "",
-}
+
+@dataclass(frozen=True, slots=True)
+class InductionSettings:
+    """How an automatic recovery began: names of its start and of constructs taken out of it.
+
+    ``held_out`` are the origins that ``hold_out`` and ``seed`` drew. Negatives and target are a
+    path and the digest of what was read there; empty if there are none.
+    """
+
+    start: str = ""
+    without: tuple[str, ...] = ()
+    held_out: tuple[str, ...] = ()
+    hold_out: float = 0.0
+    seed: int = 1
+    suffix: str = ""
+    negatives_path: str = ""
+    negatives_sha256: str = ""
+    target_path: str = ""
+    target_sha256: str = ""
 
 
-class GrowthFolderError(ValueError):
-    """A growth cannot be continued; the text is one line with the reason."""
+class InductionFolderError(ValueError):
+    """An automatic recovery cannot be continued; the text is one line with the reason."""
 
 
 @dataclass(frozen=True, slots=True)
-class GrowthFolder:
-    """The folder at a path; reading raises `GrowthFolderError` or `LedgerError`."""
+class InductionFolder:
+    """The folder at a path; reading raises `InductionFolderError` or `LedgerError`."""
 
     path: Path
 
-    def settings(self) -> dict[str, Any]:
-        """Return the settings with which the growth began, without those that its record lacks."""
+    def settings(self) -> InductionSettings:
+        """Return the settings with which the recovery began; the record may lack some."""
         file = self.path / "auto.json"
         if not (file.is_file() and (self.path / "start.g4").is_file()):
-            raise GrowthFolderError(f"{self.path}: there is nothing to resume")
+            raise InductionFolderError(f"{self.path}: there is nothing to resume")
         try:
             record = json_of(read_bytes(file).decode())
             if not isinstance(record, dict):
                 raise TypeError
-            known = {name: type(d)(record[name]) for name, d in SETTINGS.items() if name in record}
-            hash(tuple(known.values()))  # names of origins are texts
+            nothing = asdict(InductionSettings())
+            known = InductionSettings(
+                **{name: type(d)(record[name]) for name, d in nothing.items() if name in record}
+            )
+            hash(known)  # names of origins are texts
         except (ValueError, TypeError):
-            raise GrowthFolderError(f"{file}: not the record of an automatic recovery") from None
+            raise InductionFolderError(f"{file}: not the record of an automatic recovery") from None
         return known
 
     def continued(
@@ -82,7 +90,7 @@ class GrowthFolder:
             known = json.loads(read_bytes(file))
             return [tuple(from_data(edit) for edit in edits) for edits in known]
         except (ValueError, TypeError, AttributeError) as error:
-            raise GrowthFolderError(f"{file}: {error}") from None
+            raise InductionFolderError(f"{file}: {error}") from None
 
     def write(self, ledger: InducedLedger, struck: Sequence[Sequence[Edit]]) -> None:
         """Write all but the record; constructs that are gone are removed."""
