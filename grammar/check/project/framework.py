@@ -12,7 +12,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from grammar.check.analysis.constant_folding import Value
 from grammar.check.analysis.context import Context
 from grammar.check.analysis.spelling import Spelling, spelling_of
-from grammar.check.flow import control_flow, data_flow, entry_points, write_protection
+from grammar.check.flow import (
+    control_flow,
+    entry_points,
+    missing_values,
+    suspicious_statements,
+    unused_variables,
+    write_protection,
+)
 from grammar.check.flow.effects import NO_EFFECTS, Effects, effects
 from grammar.check.flow.effects import of_project as of_effects
 from grammar.check.limits import name_limits, value_limits
@@ -53,7 +60,9 @@ CHECKS: tuple[Check, ...] = (
     splines.check,
     value_limits.check,
     entry_points.check,
-    data_flow.check,
+    missing_values.check,
+    unused_variables.check,
+    suspicious_statements.check,
     write_protection.check,
     unbalanced_folds.check,
 )
