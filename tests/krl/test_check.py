@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -12,6 +13,7 @@ from zipfile import ZipFile
 import pytest
 
 from krl.cli import main
+from krl.commands.check import watching
 
 WRONG = "DEF A()\nDECL INT N\nIF N = 1 THEN\nHALT\nENDIF\nEND\n"
 LOOSE = "DEF B()\nHALT\nEXIT\nEND\n"
@@ -359,3 +361,34 @@ def test_fixes_of_checks_and_of_syntax(tmp_path: Path, capsys: pytest.CaptureFix
     assert 0 == check("--fix", str(file))
     after = text.replace("B(F)", "B(F[])").replace("] = 2 THEN", "] == 2 THEN").format(called)
     assert after == file.read_text(encoding="utf-8")
+
+
+def test_watching_goes_on(
+    programs: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Changed settings apply, and files or settings that cannot be read end nothing."""
+    settings = programs / "krl.toml"
+
+    def changes(_paths: object) -> Iterator[None]:
+        yield
+        settings.write_text('ignore = ["KRL001"]', encoding="utf-8")
+        yield
+        settings.write_text("ignore =", encoding="utf-8")
+        yield
+        settings.unlink()
+        text = (programs / "A.src").read_text(encoding="utf-8")
+        (programs / "A.src").unlink()
+        yield
+        (programs / "A.src").write_text(text, encoding="utf-8")
+        yield
+
+    monkeypatch.setattr(watching, "changes", changes)
+    assert 0 == check("--no-cache", "--watch", "A.src")
+    said = [line.split(" (")[0] for line in capsys.readouterr().err.splitlines()]
+    assert [
+        "1 file checked: 1 error",
+        "1 file checked: no findings",
+        f"krl: {settings}: not TOML: Invalid value",
+        "krl: A.src: no such file or folder",
+        "1 file checked: 1 error",
+    ] == said

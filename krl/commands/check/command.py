@@ -11,7 +11,7 @@ import typer
 
 from krl.baseline_file import baseline_place, read_baseline
 from krl.commands.check.output import Format, sum_up, write
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
 from krl.extras import expected_extras
 from krl.project_settings import Settings, read_settings, settings_of
 from krl.terminal.options import JobsOption
@@ -127,31 +127,35 @@ def check(
     if format_ is Format.JUNIT:
         with expected_extras("junitparser"):
             pass
-    agreed = _agreed(paths, settings, no_settings)
-    selection = _selection(agreed, select, ignore)
-    options = CheckOptions(
-        syntax_only,
-        stops or _asks_for_stops(selection),
-        complete or agreed.complete,
-        _packages([*agreed.packages, *(packages or ())]),
-    )
-    known = baseline or agreed.baseline
-    check_ = _Check(
-        paths,
-        options,
-        agreed,
-        selection,
-        None if write_baseline else known,
-        jobs,
-        None if no_cache else _usable(cache, user_cache()),
-    )
+
+    def as_agreed() -> _Check:
+        """Return the check under the settings of this moment."""
+        agreed = _agreed(paths, settings, no_settings)
+        selection = _selection(agreed, select, ignore)
+        options = CheckOptions(
+            syntax_only,
+            stops or _asks_for_stops(selection),
+            complete or agreed.complete,
+            _packages([*agreed.packages, *(packages or ())]),
+        )
+        return _Check(
+            paths,
+            options,
+            agreed,
+            selection,
+            None if write_baseline else baseline or agreed.baseline,
+            jobs,
+            None if no_cache else _usable(cache, user_cache()),
+        )
+
+    check_ = as_agreed()
     if fix or diff:
         from krl.commands.check.fixing import fix_files
 
-        if known and not write_baseline:
-            read_baseline(known)  # what is wrong with it is told before files are changed
+        if check_.baseline:
+            read_baseline(check_.baseline)  # what is wrong with it is told before files are changed
         is_changed = fix_files(
-            paths, check_.findings(), check_.is_wanted, agreed.leaves_out, is_shown=diff
+            paths, check_.findings(), check_.is_wanted, check_.agreed.leaves_out, is_shown=diff
         )
         if diff:
             return FINDINGS if is_changed else FINE
@@ -161,8 +165,14 @@ def check(
         from krl.commands.check.watching import changes
 
         with expected_extras("watchfiles"):
-            for _ in changes(paths):
-                check_.run(format_, out, verbose)
+            for is_again, _ in enumerate(changes(paths)):
+                try:
+                    as_agreed().run(format_, out, verbose)
+                except InputError as error:
+                    if not is_again:
+                        raise
+                    # files are gone or half written for a moment
+                    typer.echo(one_line(f"krl: {error}"), err=True)
         return FINE
     with gc_paused(MANY_OBJECTS):
         found = check_.run(format_, out, verbose)
@@ -188,7 +198,7 @@ def _selection(agreed: Settings, select: list[str] | None, ignore: list[str] | N
 
 @dataclass(frozen=True, slots=True)
 class _Check:
-    """A check that can be repeated."""
+    """A check under certain settings."""
 
     paths: Sequence[Path]
     options: "CheckOptions"
