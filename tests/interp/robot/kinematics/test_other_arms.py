@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from interp.robot.kinematics.chain import Chain, Joint
 from interp.robot.kinematics.kinematics import Array, Kinematics, matrix_of
@@ -218,10 +219,56 @@ def test_a_chain_of_four_joints(arm: Kinematics) -> None:
         solve(scara, tilted)
 
 
-def test_a_half_turn_is_not_met(arm: Kinematics) -> None:
-    """A pose that is a half turn away from another, in the same place, is missed by half a turn."""
-    other = NumericKinematics(arm.machine)
-    poses = np.stack([np.eye(4)] * 3)
-    turned = np.stack([np.diag([*sides, 1.0]) for sides in ((1, -1, -1), (-1, 1, -1), (-1, -1, 1))])
-    missing = other._missing(poses, turned)
-    assert [math.pi] * 3 == np.linalg.norm(missing, axis=1).tolist()
+@st.composite
+def chains(draw: st.DrawFn) -> tuple[Chain, Array, Array]:
+    """A chain of two to six joints, some of which slide, and two neighbouring places of it."""
+    directions = st.sampled_from(((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.6, 0.8)))
+    sides, turns = st.integers(-500, 500), st.sampled_from((0, 90, -90, 30))
+    frames = st.builds(Pose.of, *(sides,) * 3, *(turns,) * 3)
+    count = draw(st.integers(2, 6))
+    linear = [draw(st.booleans()) if place < 2 else False for place in range(count)]
+    joints = tuple(
+        Joint(f"A{place + 1}", draw(frames), draw(directions), linear[place])
+        for place in range(count)
+    )
+    here = np.zeros(6)
+    here[:count] = [draw(st.integers(-120, 120)) for _ in range(count)]
+    step = np.zeros(6)
+    step[:count] = [draw(st.integers(-15, 15)) for _ in range(count)]
+    return Chain(joints, draw(frames)), here, here + step
+
+
+@settings(max_examples=25)
+@given(drawn=chains())
+def test_chains_of_any_joints(arm: Kinematics, drawn: tuple[Chain, Array, Array]) -> None:
+    """Joints reach where their transforms lead, back from there, and along what lies between."""
+    chain, here, there = drawn
+    other = kinematics_of(replace(arm.machine, own_chain=chain))
+    pose = np.eye(4)
+    for joint, value in zip(chain.joints, here.tolist(), strict=False):
+        x, y, z = (value * part for part in joint.axis)
+        turn = np.eye(4)
+        turn[:3, :3] = Rotation.from_rotvec((x, y, z), degrees=True).as_matrix()
+        move = matrix_of(Pose.of(x, y, z)) if joint.is_linear else turn
+        pose = pose @ matrix_of(joint.frame) @ move
+    np.testing.assert_allclose(other.forward(here), pose @ matrix_of(chain.end), atol=1e-8)
+    way = here + np.linspace(0.0, 1.0, 65)[:, None] * (there - here)
+    poses = other.forward(way)
+    followed = other.inverse_along(poses, here.tolist())
+    assert followed is not None
+    near = 0.1 if len(chain.joints) < 6 else 1e-5  # mm, or of a cosine by 1e-3
+    np.testing.assert_allclose(other.forward(followed), poses, atol=near)
+    ways = other.inverse(poses[-1])
+    reached = other.forward(ways[~np.isnan(ways[:, 0])])
+    assert len(reached)
+    np.testing.assert_allclose(reached, [poses[-1]] * len(reached), atol=near)
+
+
+def test_a_joint_slides_beyond_a_turn(arm: Kinematics) -> None:
+    """The way of a linear joint is no angle, and axis 1 of it is nowhere near."""
+    chain = Chain((Joint("A1", Pose.of(), is_linear=True), Joint("A2", Pose.of(x=100))))
+    slide = kinematics_of(replace(arm.machine, own_chain=chain))
+    axes = np.array([700.0, 30.0, 0.0, 0.0, 0.0, 0.0])
+    ways = slide.inverse(slide.forward(axes))
+    assert np.nanmin(np.abs(ways - axes).max(axis=-1)) < 1e-6
+    assert float(slide.distance_to_axis_1(axes)) == math.inf
