@@ -131,7 +131,7 @@ MOST_LINE_SHAPES = 6
 PHRASE_LEVELS = 3
 
 # -------------------------------------------------------------------------------- sites of edits
-# `recovery.proposals.site_finder`, `line_sites`.
+# `recovery.proposals.site_finder` and `*_sites` beside it, `line_reading`.
 
 #: Steps of any edit at a site. It only counts beside edits of blocks, which have none. Measured:
 #: other proposals with 4.
@@ -165,7 +165,7 @@ LONGEST_PREFIX = 3
 SHARED_ELEMENTS = 4
 
 # ----------------------------------------------------------------------------- order of candidates
-# `recovery.proposals.candidates`, `block_inference`.
+# `recovery.proposals.candidates`, `edit_writer`, `block_inference`.
 
 #: What is left of an edit's worth for each step in breadth: of two that mend nearly as much, the
 #: more restrictive is preferred. Measured: 58 clusters with 0.99.
@@ -220,6 +220,7 @@ MOST_SCORED_LIGHT = 12
 MOST_PROPOSALS = 5
 
 # ------------------------------------------------------------------------- worth of a proposal
+# `recovery.clustering.worth`, `order`, `search`.
 
 #: Weight of a mended line of another group than the one a cause is sought for. Measured: 58
 #: clusters with 0.15.
@@ -242,7 +243,7 @@ FLAW_FACTOR = 0.5
 STILL_NAMES_PART = 2
 
 # ---------------------------------------------------------------------------------- trials
-# `recovery.clustering.edit_trial`, `file_trial`, `regression`, `negative_score`.
+# `recovery.clustering.edit_trial`, `joint_trial`, `file_trial`, `regression`, `negative_score`.
 
 #: Recognisers of edited grammars that are kept, and their configurations together. Bound on memory.
 MOST_RECOGNIZERS_KEPT = 160
@@ -278,8 +279,8 @@ MOST_SEARCHED_TEXT = 4_000_000
 GENERATED_NEGATIVES = 250
 NEGATIVES_SEED = 1
 
-# -------------------------------------------------------------------------------- merging causes
-# `recovery.clustering.causes`, `edit_merging`, `title`.
+# -------------------------------------------------------------------------------- joining causes
+# `recovery.clustering.joined_causes`, `edit_merging`, `more_places`, `completion`, `title`.
 
 #: Causes that a later one is compared with: the first ones hold back most. Bound on time.
 MOST_COMPARED = 40

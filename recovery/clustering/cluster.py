@@ -4,38 +4,28 @@ from __future__ import annotations
 
 import hashlib
 from array import array
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
 
-from grammar.parser.failures import FailureContext, FailureFinder, Form
-from grammar.parser.recognizer import Recognizer
+from grammar.parser.failures import FailureContext
 from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.causes import find_causes
-from recovery.clustering.file_trial import FailingFile, FileTrial
+from recovery.clustering.distinct_lines import DistinctLines, Member
+from recovery.clustering.file_trial import FileTrial
+from recovery.clustering.mending_order import FileNeed, mending_order
 from recovery.clustering.negative_score import NegativeCounter, no_negatives
-from recovery.clustering.reason import AS_NAME, ReasonFinder
+from recovery.clustering.reason import AS_NAME
 from recovery.clustering.regression import ParsedFiles
 from recovery.clustering.title import TitleWriter
 from recovery.clustering.unknown_characters import with_tokens
 from recovery.proposals.edit_site import LinePattern
 from recovery.survey.failing_line import FailingLine
-from recovery.survey.signature import Signature, signature_of
 from recovery.survey.survey import Survey
 from recovery.survey.surveyed_files import SurveyedFile
-from recovery.survey.suspected_keywords import SuspectedKeywords
 from recovery.tuning import MOST_EXAMPLES
 from support.parallel.progress import Progress, no_progress
-
-
-@dataclass(frozen=True, slots=True)
-class Member:
-    """A failure with its file."""
-
-    file: SurveyedFile
-    failed: FailingLine
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +99,7 @@ def cluster(
     ``count_negatives`` counts the negatives that an edit accepts; ``text_of`` returns the text of a
     file; ``on_found`` and ``on_done`` report progress.
     """
-    groups = _FailingLines(found)
+    groups = DistinctLines(found)
     causes: Sequence[Cause] = ()
     if groups.lines:
         on_found(len(groups.by_signature))
@@ -137,94 +127,12 @@ def cluster(
     return _assembled(found, groups, causes, cause_of)
 
 
-class _DirectFailures(Iterable[tuple[str, FailingLine, Form]]):
-    """The failures of a survey that follow from no other, with digest and form, read each time."""
-
-    def __init__(self, found: Survey) -> None:
-        self._found = found
-
-    def __iter__(self) -> Iterator[tuple[str, FailingLine, Form]]:
-        for file in self._found.failing:
-            for failed in file.failures:
-                if not failed.follows:
-                    yield file.digest, failed, self._found.forms[failed.form]
-
-
-class _FailingLines:
-    """The distinct failing lines of a survey, and where each occurs."""
-
-    #: Stands for the number of the line of a failure that only follows from another.
-    FOLLOWS = -1
-
-    def __init__(self, found: Survey) -> None:
-        self.recognizer = Recognizer(found.grammar)
-        finder = FailureFinder(self.recognizer)
-        self.contexts = [self._context(finder, f.before, f.kinds[: f.index]) for f in found.forms]
-        lexer = self.recognizer.lexer
-        suspected = SuspectedKeywords(self.recognizer, _DirectFailures(found))
-        numbers: dict[LinePattern, int] = {}
-        signatures: list[Signature] = []
-        self.lines_of: dict[str, array[int]] = {}
-        self._at: dict[str, array[int]] = {}
-        self.specimens: list[Member] = []  # the shortest occurrence of each line
-        self.weights: list[int] = []
-        for file in found.failing:
-            own = self.lines_of[file.digest] = array("l")
-            at = self._at[file.digest] = array("l")
-            for failed in file.failures:
-                if failed.follows:
-                    own.append(self.FOLLOWS)
-                    continue
-                form = found.forms[failed.form]
-                line = LinePattern(form, suspected.of_line(failed, form))
-                number = numbers.setdefault(line, len(numbers))
-                if number == len(signatures):
-                    context = self.contexts[failed.form]
-                    signatures.append(signature_of(lexer, form, line.keywords, context))
-                    self.specimens.append(Member(file, failed))
-                    self.weights.append(0)
-                elif len(failed.source) < len(self.specimens[number].failed.source):
-                    self.specimens[number] = Member(file, failed)
-                own.append(number)
-                at.append(failed.line)
-            for number in set(own) - {self.FOLLOWS}:
-                self.weights[number] += len(file.places)
-        self.lines = tuple(numbers)
-        self.signatures = signatures
-        reasons = ReasonFinder(self.recognizer)
-        self.reasons = [
-            reasons.reason(line, signature, self.contexts[found_in.failed.form])
-            for line, signature, found_in in zip(numbers, signatures, self.specimens, strict=True)
-        ]
-        by_signature: dict[Signature, list[int]] = defaultdict(list)
-        for number, signature in enumerate(signatures):
-            by_signature[signature].append(number)
-        self.by_signature = sorted(
-            by_signature.values(), key=lambda group: (-sum(self.weights[n] for n in group), group)
-        )
-
-    def failing(
-        self, found: Survey, text_of: Callable[[SurveyedFile], str]
-    ) -> Iterator[FailingFile]:
-        """Yield the files with failing lines; their texts are read when needed."""
-        for file in found.failing:
-            lines = array("l", (n for n in self.lines_of[file.digest] if n != self.FOLLOWS))
-            yield FailingFile(
-                file.digest, file.size, partial(text_of, file), self._at[file.digest], lines
-            )
-
-    def _context(
-        self, finder: FailureFinder, before: tuple[tuple[int, ...], ...], kinds: Sequence[int]
-    ) -> FailureContext:
-        return finder.context(self.recognizer.run(self.recognizer.restore(before), kinds)[0])
-
-
 def _assembled(
-    found: Survey, groups: _FailingLines, causes: Sequence[Cause], cause_of: dict[int, int]
+    found: Survey, groups: DistinctLines, causes: Sequence[Cause], cause_of: dict[int, int]
 ) -> Clusters:
     heaviest = [_heaviest(cause, groups) for cause in causes]
     failures = [_Failures(groups.specimens[number]) for number in heaviest]
-    needs: list[_Need] = []
+    needs: list[FileNeed] = []
     shared: dict[frozenset[int], frozenset[int]] = {}
     for file in found.failing:
         lines = groups.lines_of[file.digest]
@@ -232,10 +140,10 @@ def _assembled(
         for number, failed in zip(causes_of, file.failures, strict=True):
             failures[number].add(file, failed)
         wanted = frozenset(causes_of)
-        needs.append(_Need(file, lines, shared.setdefault(wanted, wanted)))
+        needs.append(FileNeed(file, lines, shared.setdefault(wanted, wanted)))
     clusters = list(_clusters(groups, causes, heaviest, failures, needs))
     parsed = _places(found.files) - _places(found.failing)
-    order = _mending_order(parsed, needs, clusters)
+    order = mending_order(parsed, needs, [entry.id for entry in clusters])
     by_rank = sorted(
         range(len(clusters)),
         key=lambda n: (
@@ -249,7 +157,7 @@ def _assembled(
     ranks = {line: rank_of[number] for line, number in cause_of.items()}
     return Clusters(
         tuple(clusters[number] for number in by_rank),
-        tuple(order),
+        tuple((clusters[number], count) for number, count in order),
         {digest: _with_followers(lines, ranks) for digest, lines in groups.lines_of.items()},
         groups.lines,
         tuple(groups.contexts),
@@ -257,11 +165,11 @@ def _assembled(
 
 
 def _clusters(
-    groups: _FailingLines,
+    groups: DistinctLines,
     causes: Sequence[Cause],
     heaviest: Sequence[int],
     failures: Sequence[_Failures],
-    needs: Sequence[_Need],
+    needs: Sequence[FileNeed],
 ) -> Iterator[Cluster]:
     """Yield the cluster of each cause; its ``heaviest`` line represents it."""
     alone: Counter[frozenset[int]] = Counter()
@@ -276,7 +184,7 @@ def _clusters(
         rules,
     )
     for number, (cause, line) in enumerate(zip(causes, heaviest, strict=True)):
-        mended = [proposal.mended | {_FailingLines.FOLLOWS} for proposal in cause.proposals]
+        mended = [proposal.mended | {DistinctLines.FOLLOWS} for proposal in cause.proposals]
         yield Cluster(
             id="c-" + hashlib.sha256(signatures[number].encode()).hexdigest()[:8],
             signature=signatures[number],
@@ -295,14 +203,6 @@ def _clusters(
                 for lines in mended
             ),
         )
-
-
-class _Need(NamedTuple):
-    """What a file needs to parse: its failing lines, and their causes."""
-
-    file: SurveyedFile
-    lines: Sequence[int]
-    causes: frozenset[int]
 
 
 class _Failures:
@@ -347,11 +247,11 @@ def _with_followers(lines: Sequence[int], of_line: Mapping[int, int]) -> array[i
     """Return the number of each line's cause; what follows has that of the line before it."""
     numbers = array("l")
     for line in lines:  # the first failure of a file follows from no other
-        numbers.append(numbers[-1] if line == _FailingLines.FOLLOWS else of_line[line])
+        numbers.append(numbers[-1] if line == DistinctLines.FOLLOWS else of_line[line])
     return numbers
 
 
-def _heaviest(cause: Cause, groups: _FailingLines) -> int:
+def _heaviest(cause: Cause, groups: DistinctLines) -> int:
     """Return the line that represents a cause: the heaviest one its best proposal repairs."""
     mended = cause.proposals[0].mended & set(cause.lines) if cause.proposals else ()
     return max(
@@ -360,7 +260,7 @@ def _heaviest(cause: Cause, groups: _FailingLines) -> int:
     )
 
 
-def _title(cause: Cause, number: int, groups: _FailingLines, writer: TitleWriter) -> str:
+def _title(cause: Cause, number: int, groups: DistinctLines, writer: TitleWriter) -> str:
     """Return the title for the line with this number, which represents a cause."""
     if groups.reasons[number] == AS_NAME:
         return writer.title_of_names(
@@ -389,36 +289,3 @@ def _distinct(texts: Sequence[str], rules: Sequence[str]) -> list[str]:
         same = sum(t == named or t.startswith(f"{named} #") for t in out)
         out.append(f"{named} #{same + 1}" if same else named)
     return out
-
-
-def _mending_order(
-    parsed: int,
-    needs: Sequence[_Need],
-    clusters: Sequence[Cluster],
-) -> Iterator[tuple[Cluster, int]]:
-    """Yield the clusters in mending order, with the number of files that parse after each.
-
-    ``parsed`` files parse before the first. The order is greedy: next comes the cluster that makes
-    most files parse or, on a tie, brings most files closest to it.
-    """
-    waiting: Counter[frozenset[int]] = Counter()
-    for need in needs:
-        waiting[need.causes] += len(need.file.places)
-    while waiting:
-        gain: Counter[int] = Counter()
-        near: dict[int, float] = defaultdict(float)
-        for wanted, count in waiting.items():
-            for number in wanted:
-                near[number] += count / len(wanted) ** 2
-                if len(wanted) == 1:
-                    gain[number] += count
-        best = max(near, key=lambda n: (gain[n], near[n], clusters[n].id))
-        left: Counter[frozenset[int]] = Counter()
-        for wanted, count in waiting.items():
-            rest = wanted - {best}
-            if rest:
-                left[rest] += count
-            else:
-                parsed += count
-        waiting = left
-        yield clusters[best], parsed

@@ -33,7 +33,7 @@ from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.edit_merging import combined_edits, merged_as_choice
 from recovery.clustering.edit_trial import changed_rules
 from recovery.clustering.negative_score import no_negatives
-from recovery.clustering.search import CauseSearch
+from recovery.clustering.search import LIGHT, CauseSearch
 from recovery.forms.parts import choices
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.edit_site import LinePattern
@@ -105,7 +105,11 @@ def _with_more(
     No words are reserved, and no more negatives accepted, than with the proposal itself.
     """
     wanted = frozenset(lines)
-    share = partial(search.readable_share, lines=sorted(wanted))
+    some = sorted(wanted)
+
+    def share(proposal: Proposal) -> float:
+        return search.order.readable_share(proposal.edits, some)
+
     for _ in range(tuning.MOST_COMPLETIONS):
         for more in _further(search, proposal, wanted, rules):
             is_safe = more.accepts_negatives <= proposal.accepts_negatives
@@ -138,14 +142,13 @@ def _further(
             patterns.append(LinePattern(Form(wider.frames(start), tuple(kinds), failed), meant))
             numbers.append(number)
     inner = CauseSearch(wider, patterns, [search.weights[n] for n in numbers], no_negatives)
-    inner.is_thorough = False
     groups: dict[object, list[int]] = defaultdict(list)
     for number, line in enumerate(patterns):
         groups[search.lead(line), line.words()[line.form.index]].append(number)
     heaviest = sorted(groups.values(), key=lambda g: (-sum(inner.weights[n] for n in g), g))
     own = changed_rules(proposal.edits)
     for some, group in product((own, rules), heaviest[: tuning.MOST_GROUPS_COMPLETED]):
-        cause = inner.best_for(group, partial(_are_of, some))
+        cause = inner.best_for(group, inner.ordinary, LIGHT, partial(_are_of, some))
         for further in cause.proposals if cause else ():
             edits = continued(grammar, proposal.edits, further.edits)
             if edits is not None:

@@ -19,9 +19,9 @@ from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.lexer import Lexer
 from grammar.parser.network import is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Frames, Recognizer, State
-from grammar.parser.shortest_paths import Paths
 from recovery import tuning
 from recovery.clustering.joint_trial import DetourReader, Path
+from recovery.clustering.line_index import LineIndex
 from recovery.proposals.edit_site import LinePattern
 from support.gc_pause import gc_paused
 
@@ -82,76 +82,16 @@ class EditTrial:
     def __init__(self, recognizer: Recognizer, lines: Sequence[LinePattern]) -> None:
         self.recognizer = recognizer
         self.lines = lines
-        paths = Paths(recognizer.network)
-        self._prefix: dict[Frames, list[int]] = {}
+        self._index = LineIndex(recognizer, lines)
         self._wider: dict[tuple[Edit, ...], Recognizer | None] = {}
         #: Of each trial the index at which a line fails, so that no line is read again.
         self._known: dict[tuple[Edit, ...], dict[int, int | None]] = defaultdict(dict)
         self._answers = 0
         self._forget_paths()
-        self._by_rule: dict[str, list[int]] = defaultdict(list)
-        self._by_keyword: dict[str, set[int]] = defaultdict(set)
-        for number, line in enumerate(lines):
-            if line.is_enormous:
-                continue
-            before = line.form.before
-            if before not in self._prefix:
-                self._prefix[before] = self._way_to(paths, before)
-            for rule in self._rules_at_work(line):
-                self._by_rule[rule].append(number)
-            for _, keyword in line.keywords:
-                self._by_keyword[keyword].add(number)
-
-    def _way_to(self, paths: Paths, before: Frames) -> list[int]:
-        """Return the shortest tokens after which a line can begin in this state, with a line end.
-
-        A line that can begin in several configurations may do so only after some of the paths to
-        one of them: a routine may follow a routine, but not a data list. So the path with most of
-        the configurations is chosen.
-        """
-        ways = sorted(map(self._ended, map(paths.prefix, before)), key=lambda way: (len(way), way))
-        wanted = frozenset(before)
-        return max(ways, key=lambda way: len(wanted & self._after(way)))  # the first of equals
-
-    def _ended(self, prefix: list[int]) -> list[int]:
-        """Return the tokens with a line end appended, if one can follow."""
-        line_kind = self.recognizer.line_kind
-        if prefix and prefix[-1] != line_kind:
-            ended = [*prefix, line_kind]
-            if self.recognizer.run(self.recognizer.start, ended)[1] is None:
-                return ended
-        return prefix
-
-    def _after(self, way: Sequence[int]) -> frozenset[tuple[int, ...]]:
-        """Return the configurations after these tokens."""
-        state, _ = self.recognizer.run(self.recognizer.start, way)
-        return frozenset(self.recognizer.frames(state))
-
-    def _rules_at_work(self, line: LinePattern) -> set[str]:
-        """Return the rules in which an edit could change how this line is read."""
-        recognizer, form = self.recognizer, line.form
-        rule_of = recognizer.network.rule
-        state = recognizer.restore(form.before)
-        rules = {rule_of[p] for p, _ in recognizer.sites(state)}
-        if not form.index:  # the preceding line end may be read differently
-            rules |= {rule_of[p] for frames in form.before for p in frames}
-        for kind in form.kinds[: form.index]:
-            following = recognizer.step(state, kind)
-            assert following is not None
-            state = following
-            rules |= {rule_of[p] for p, _ in recognizer.sites(state)}
-        return rules
 
     def relevant(self, edits: Sequence[Edit]) -> list[int]:
         """Return the lines that the edits might repair."""
-        keywords = [e.name for e in edits if isinstance(e, AddToken)]
-        if keywords and not any("|" in getattr(e, "text", "") for e in edits):
-            found = set.union(*(self._by_keyword.get(k, set()) for k in keywords))
-            return sorted(found)
-        if any(isinstance(e, AddRule) for e in edits):
-            return list(range(len(self.lines)))
-        found = {n for rule in changed_rules(edits) for n in self._by_rule.get(rule, ())}
-        return sorted(found.union(*(self._by_keyword.get(k, set()) for k in keywords)))
+        return self._index.relevant(edits, changed_rules(edits))
 
     def wider(self, edits: Sequence[Edit]) -> Recognizer | None:
         """Return a recogniser with the edits, cached; ``None`` if they do not fit."""
@@ -208,7 +148,7 @@ class EditTrial:
             chosen = list(numbers)
             paths = [self._path(number, detours.words) for number in chosen]
             for number, failed in zip(chosen, self._reader.read(detours, paths), strict=True):
-                begun = len(self._prefix[self.lines[number].form.before])
+                begun = len(self._index.prefix[self.lines[number].form.before])
                 yield number, None if failed is None else failed - begun
         elif (wider := self.wider(edits)) is not None:
             for number, start, kinds in self.read_by(wider, edits, numbers):
@@ -223,7 +163,7 @@ class EditTrial:
         meant = tuple((place, word) for place, word in line.keywords if word in words)
         known = self._paths.get((number, meant))
         if known is None:
-            prefix = self._prefix[line.form.before]
+            prefix = self._index.prefix[line.form.before]
             kinds = [*prefix, *line.form.kinds]
             for place, word in meant:
                 kinds[len(prefix) + place] = self._reader.kind(word)
@@ -281,7 +221,7 @@ class EditTrial:
             line = self.lines[number]
             before = line.form.before
             if before not in starts:
-                state, failed = wider.run(wider.start, self._prefix[before])
+                state, failed = wider.run(wider.start, self._index.prefix[before])
                 starts[before] = state if failed is None else None
             start = starts[before]
             if start is None:  # the edits removed the path to this line

@@ -14,7 +14,7 @@ from grammar.notation.addresses import element_at
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, MakeOptional, Widen
 from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.edit_merging import combined_edits
-from recovery.clustering.search import CauseSearch
+from recovery.clustering.search import LIGHT, CauseSearch
 from recovery.tuning import LEAST_LEFT, MOST_EXTENDED, MOST_PLACES
 
 
@@ -42,8 +42,7 @@ def _extended(search: CauseSearch, proposal: Proposal, lines: Sequence[int]) -> 
         left = [n for n in lines if n not in proposal.mended and n not in proposal.advanced]
         if sum(search.weights[n] for n in left) < LEAST_LEFT * weight:
             break
-        search.open, search.is_thorough = set(left), False
-        found = search.best_for(left, is_the_same)
+        found = search.best_for(left, left, LIGHT, is_the_same)
         wider = None
         for other in found.proposals if found else ():
             edits = combined_edits(other.edits, proposal.edits)

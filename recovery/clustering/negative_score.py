@@ -22,8 +22,9 @@ from grammar.notation.model import (
     Repeat,
 )
 from grammar.parser.recognizer import Recognizer
+from recovery.clustering.detours import rule_of
 from recovery.clustering.edit_trial import changed_rules, edited
-from recovery.clustering.joint_trial import DetourReader, Path, rule_of
+from recovery.clustering.joint_trial import DetourReader, Path
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.tuning import GENERATED_NEGATIVES, MOST_CONFIGURATIONS_KEPT, NEGATIVES_SEED

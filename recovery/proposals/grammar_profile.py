@@ -29,6 +29,7 @@ from grammar.notation.model import (
 )
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.keywords import Vocabulary
+from recovery.forms.symbols import Token
 from recovery.tuning import HUB_ALTERNATIVES, SAME_TEXT_BONUS, WIDTH_PER_DOUBLING
 
 _NAMES = re.compile(r"\w+")
@@ -272,6 +273,22 @@ class GrammarProfile:
     def line_end(self) -> str:
         """The symbol that a rule writes for a line end."""
         return min(self.line_ends, default=self.recognizer.lexer.line_end)
+
+    def ends_a_line(self, element: Element) -> bool:
+        """Return whether an element is a line end, or lines in a row."""
+        item = element.item if isinstance(element, Repeat) else element
+        if not isinstance(item, Reference):
+            return False
+        ends = {*self.line_ends, self.recognizer.lexer.line_end}
+        return item.name in ends or (item is not element and self.closing(item.name) is not None)
+
+    def is_new_word(self, token: Token) -> bool:
+        """Return whether a token is a keyword that no rule uses."""
+        kind, keyword = token
+        lexer = self.recognizer.lexer
+        return keyword is not None or (
+            lexer.is_keyword(kind) and not self.vocabulary.is_written(lexer.names[kind])
+        )
 
     @cached_property
     def loops(self) -> frozenset[str]:

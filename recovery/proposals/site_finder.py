@@ -1,31 +1,26 @@
 """Finding edit sites: where the grammar could accept the tokens of a failing line.
 
-The sites follow from the configurations of the recogniser at the offending token and before it, and
-from the positions from which the rest of the line can be read. `recovery.proposals.candidates`
-decides what to write there.
+The sites follow from the configurations of the recogniser at the offending token, and from the
+positions from which the rest of the line can be read. Those ahead of it are found by
+`recovery.proposals.earlier_sites`, those for whole lines by `recovery.proposals.line_sites`.
+`recovery.proposals.edit_writer` decides what to write there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import product
 
 from grammar.notation.addresses import Address
-from grammar.notation.edits import AddAlternative, Edit, Insert, MakeOptional
+from grammar.notation.edits import AddAlternative, Insert, MakeOptional
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat
-from grammar.parser.failures import Form
 from grammar.parser.lazy_automaton import Configuration
-from grammar.parser.recognizer import State
 from recovery import tuning
 from recovery.forms.symbols import Token
-from recovery.proposals.edit_site import (
-    EditSite,
-    LinePattern,
-    RankedEdits,
-    configurations_of,
-    places_of,
-)
+from recovery.proposals.earlier_sites import EarlierSiteFinder
+from recovery.proposals.edit_site import EditSite, LinePattern, RankedEdits, places_of
 from recovery.proposals.grammar_profile import GrammarProfile
+from recovery.proposals.insertion_sites import InsertionSites
+from recovery.proposals.line_reading import LineReading
 from recovery.proposals.line_sites import LineSiteFinder
 from recovery.proposals.phrases import Phraser
 from recovery.proposals.similarity import Similarity
@@ -35,263 +30,102 @@ class EditSiteFinder:
     """Finds the edit sites of one grammar."""
 
     def __init__(self, profile: GrammarProfile, similarity: Similarity, phraser: Phraser) -> None:
-        self.recognizer = profile.recognizer
-        self.grammar = profile.grammar
-        self.profile = profile
-        self.vocabulary = profile.vocabulary
-        self.similarity = similarity
-        self.phraser = phraser
+        self._recognizer = profile.recognizer
+        self._grammar = profile.grammar
+        self._profile = profile
+        self._vocabulary = profile.vocabulary
+        self._similarity = similarity
+        self._phraser = phraser
+        self._insertions = InsertionSites(profile)
+        self._earlier = EarlierSiteFinder(profile, self._insertions)
         self._lines = LineSiteFinder(profile, similarity, phraser)
-        #: Where the current line can be continued.
-        self._resumed: dict[tuple[State, int, int], list[int]] = {}
 
     def find(self, line: LinePattern) -> Iterator[EditSite | RankedEdits]:
         """Yield the sites of a line, and complete edits; with duplicates."""
-        recognizer, form = self.recognizer, line.form
-        words = self.phraser.groups.as_read(line.words(), form.index)
-        self._resumed.clear()
-        before = recognizer.restore(form.before)
-        starts = {form.index}
+        words = self._phraser.groups.as_read(line.words(), line.form.index)
+        reading = LineReading(self._recognizer, line, words)
         # a suspected keyword was read as a name, so the line failed later than it should have
-        starts |= {i for i, _ in line.keywords if i < form.index}
+        starts = {reading.failed, *(i for i, _ in line.keywords if i < reading.failed)}
         for start in sorted(starts):
-            state, _ = recognizer.run(before, form.kinds[:start])
-            for site in configurations_of(self.recognizer, state):
-                yield from self._at_site(state, site, words, start)
-        if form.index:
+            for site in reading.configurations(start):
+                yield from self._at(reading, start, site)
+        if reading.failed:
             # the last token may have been read as something that the line leaves out
-            start = form.index - 1
-            state, _ = recognizer.run(before, form.kinds[:start])
-            for site in configurations_of(self.recognizer, state):
-                for place in places_of(self.recognizer, site):
-                    if place[-1] <= len(self._sequence_at(site, place).elements):
-                        yield from self._omissions(state, site, place, words, start)
-            yield from self._taken_for_something_else(before, form, words)
-            yield from self._earlier(before, form, words)
-        if form.index and 0 not in starts:
-            yield from self._lines.as_new_line(before, words)
-        yield from self._lines.as_lines(before, words)
-        if form.index == 0:
-            yield from self._lines.after_line_end(form, words)
-
-    def reserved(self, words: Sequence[Token]) -> tuple[Edit, ...]:
-        """Return the edits that reserve the suspected keywords among the words."""
-        return self.vocabulary.reserve(keyword for _, keyword in words if keyword)
+            start = reading.failed - 1
+            for site in reading.configurations(start):
+                for place in places_of(self._recognizer, site):
+                    yield from self._omissions(reading, start, site, place)
+            yield from self._earlier.find(reading)
+        yield from self._lines.find(reading, is_new=0 not in starts)
 
     def block_rules(self, line: LinePattern) -> list[str]:
         """Return the rules for lines or blocks that can begin where a line begins."""
-        rules = self.recognizer.entered(self.recognizer.restore(line.form.before))
-        return sorted(rules & (self.profile.choices_of_lines | self.profile.blocks))
+        rules = self._recognizer.entered(self._recognizer.restore(line.form.before))
+        return sorted(rules & (self._profile.choices_of_lines | self._profile.blocks))
 
-    def _sequence_at(self, site: Configuration, place: Address) -> Alternative:
-        return self.profile.sequence(self.recognizer.network.rule[site[0]], place[:-1])
-
-    # ------------------------------------------------------------------- from an earlier token
-
-    def _taken_for_something_else(
-        self, before: State, form: Form, words: list[Token]
-    ) -> Iterator[EditSite]:
-        """Yield alternatives of rules as which earlier tokens were read."""
-        recognizer, network = self.recognizer, self.recognizer.network
-        begun = {frames for _, frames in self._begun(before, form)}
-        latest: dict[tuple[int, tuple[int, ...]], tuple[int, int, State]] = {}
-        state = before
-        for start in range(form.index):
-            for position, stack in configurations_of(self.recognizer, state):
-                below = stack.positions()
-                for entry, back in network.calls[position]:
-                    frames = (back, *below)
-                    if frames in begun:
-                        beyond = recognizer.at((back, stack), state)
-                        latest[entry, frames] = (start, entry, beyond)
-            following = recognizer.step(state, form.kinds[start])
-            assert following is not None
-            state = following
-        for start, entry, beyond in latest.values():
-            rule = network.rule[entry]
-            if rule in self.profile.line_ends:
-                continue
-            for end in self._resuming(beyond, words, start, form.index + 1):
-                yield EditSite(
-                    "alternative",
-                    rule,
-                    (1, 1),
-                    tuple(words[start:end]),
-                    self.profile.width(rule) + tuning.SITE_COST,
-                )
-
-    def _begun(self, before: State, form: Form) -> set[tuple[str, tuple[int, ...]]]:
-        """Return the rules that were being read at the failure, with the frames below them."""
-        state, _ = self.recognizer.run(before, form.kinds[: form.index])
-        rule = self.recognizer.network.rule
-        return {
-            (rule[each[i - 1]], each[i:])
-            for each in self.recognizer.frames(state)
-            for i in range(1, len(each))
-        }
-
-    def _earlier(self, before: State, form: Form, words: list[Token]) -> Iterator[EditSite]:
-        """Yield sites before the failure, where the line was read as something else."""
-        recognizer, network = self.recognizer, self.recognizer.network
-        begun = self._begun(before, form)
-        for start in range(max(0, form.index - tuning.MOST_SKIPPED), form.index):
-            state, _ = recognizer.run(before, form.kinds[:start])
-            for site in configurations_of(self.recognizer, state):
-                rule = network.rule[site[0]]
-                if rule in self.profile.line_ends:
-                    continue
-                is_first = site[0] == network.entry[rule]
-                for entry, back in network.calls[site[0]]:
-                    beyond = recognizer.at((back, site[1]), state)
-                    called = network.rule[entry]
-                    rank = self.profile.width(called) + tuning.SITE_COST
-                    if (called, (back, *site[1].positions())) not in begun:
-                        rank += tuning.NOT_BEGUN_COST
-                    for end in self._reading_on(beyond, words, start, form.index):
-                        yield EditSite("alternative", called, (1, 1), tuple(words[start:end]), rank)
-                # the accepted tokens may end where another reading continued and failed later
-                ends = self._reading_on(recognizer.at(site, state), words, start, start + 1)
-                for end, place in product(ends, places_of(self.recognizer, site)):
-                    sequence = self.profile.sequence(rule, place[:-1])
-                    comes_next = words[end][0] in self.profile.first(sequence, place[-1])
-                    if self._is_behind_line_end(rule, place):
-                        continue
-                    if comes_next or (not is_first and end >= form.index):
-                        yield self._insertion(rule, place, words[start:end])
-
-    def _reading_on(self, state: State, words: list[Token], start: int, first: int) -> list[int]:
-        """Return the indices, from ``first`` on, from which the rest can be read in ``state``."""
-        kinds = [kind for kind, _ in words]
-        ends = range(max(start + 1, first), min(len(kinds), start + tuning.MOST_SKIPPED + 1))
-        return [end for end in ends if self.recognizer.run(state, kinds[end:])[1] is None]
-
-    # --------------------------------------------------------------------------- at one site
-
-    def _at_site(
-        self, state: State, site: Configuration, words: list[Token], start: int
+    def _at(
+        self, reading: LineReading, start: int, site: Configuration
     ) -> Iterator[EditSite | RankedEdits]:
-        network = self.recognizer.network
-        position, stack = site
-        rule = network.rule[position]
-        if rule in self.profile.line_ends:
+        """Yield the sites and edits at a configuration before a token."""
+        rule = self._recognizer.network.rule[site[0]]
+        if rule in self._profile.line_ends:
             return
-        base = network.entry[rule]
-        automaton = network.automata[rule]
-        here = self.recognizer.at(site, state)
-        ends = self._resuming(here, words, start)
-        for place in sorted(automaton.places[position - base]):
-            number = place[-1]
-            sequence = self.profile.sequence(rule, place[:-1])
-            # insert the missing tokens and continue at the same place
-            is_last = (*place[:-1], number + 1) not in automaton.places[position - base]
-            begins_loop = number == 1 and len(place) > 2
-            gathers = self.similarity.gathers(rule)
-            for end in ends:
-                comes_next = words[end][0] in self.profile.first(sequence, number)
-                # after all optional elements, except those that the line has next; before the first
-                # element of a rule only if that element itself comes next
-                is_prefix = position != base or (
-                    not gathers and end - start <= tuning.LONGEST_PREFIX
-                )
-                is_suffix = is_last and position != base and not begins_loop
-                if ((comes_next and is_prefix) or is_suffix) and not self._is_behind_line_end(
-                    rule, place
-                ):
-                    yield self._insertion(rule, place, words[start:end])
-                yield from self._repetitions(rule, place, words[start:end])
-            is_end = 0 < start == len(words) - 1 and words[start][0] == self.recognizer.line_kind
-            if is_end and rule == self.grammar.start:
+        words = reading.words
+        for place in places_of(self._recognizer, site):
+            yield from self._parts(reading, start, site, place)
+            is_end = 0 < start == len(words) - 1 and words[start][0] == self._recognizer.line_kind
+            if is_end and rule == self._grammar.start:
                 # a line end where the file had to end
-                rank = self._insertion_width(rule) + tuning.SITE_COST
-                yield rank, (Insert(rule, place, f"{self.recognizer.lexer.line_end}*"),)
+                rank = self._insertions.width(rule) + tuning.SITE_COST
+                yield rank, (Insert(rule, place, f"{self._recognizer.lexer.line_end}*"),)
             yield from self._blocks(rule, place, words[start:])
-            if number > len(sequence.elements):
-                continue
-            # something else in place of the next element
-            element = sequence.elements[number - 1]
-            for after in self._after(site, automaton.places, place, base):
-                beyond = self.recognizer.at((after, stack), state)
-                for end in self._resuming(beyond, words, start):
-                    yield from self._replacements(rule, place, element, words[start:end])
-            yield from self._omissions(state, site, place, words, start)
+            yield from self._replacements(reading, start, site, place)
+            yield from self._omissions(reading, start, site, place)
 
-    def _resuming(
-        self, state: State, words: list[Token], start: int, earliest: int = 0
-    ) -> list[int]:
-        """Return where the line can be continued from ``state``, to its end or for some tokens."""
-        key = state, start, earliest
-        found = self._resumed.get(key)
-        if found is None:
-            found = self._resumed[key] = self._resumptions(state, words, start, earliest)
-        return found
+    # ---------------------------------------------------------------------- missing parts
 
-    def _resumptions(
-        self, state: State, words: list[Token], start: int, earliest: int
-    ) -> list[int]:
-        kinds = [kind for kind, _ in words]
-        whole, part = [], []
-        # the end of the line itself is never part of a phrase
-        for end in range(max(start + 1, earliest), min(len(kinds), start + tuning.LONGEST_RUN)):
-            unknown = next((i for i in range(end, len(words)) if words[i][1]), len(kinds))
-            if unknown == end:
-                continue  # an unknown keyword belongs to the phrase
-            _, failed = self.recognizer.run(state, kinds[end:unknown])
-            if failed is None:
-                whole.append(end)
-            elif failed > 1:
-                part.append(end)
-        return whole[: tuning.MOST_RESUMPTIONS] or part[:1]
-
-    def _insertion(self, rule: str, place: Address, words: Sequence[Token]) -> EditSite:
-        width = self._insertion_width(rule)
-        elements = self.profile.sequence(rule, place[:-1]).elements
-        if len(place) > 2 and place[-1] > len(elements):
-            width += 1  # behind one branch of a choice, not behind the choice
-        before = elements[place[-1] - 2] if place[-1] > 1 else elements[0]
-        if isinstance(before, Reference) and not before.is_token:
-            alone = self.profile.is_hub(rule) and len(elements) == 1
-            if alone or (place[-1] > 1 and self.profile.is_hub(before.name)):
-                width += tuning.UNLIKELY_COST  # behind one of many statements, not in it
-        if self._is_new_word(words[-1]) and not self._is_new_word(words[0]):
-            width += 1  # of two ways to cut the line, the word is rather ahead of its operand
-        return EditSite("insert", rule, place, tuple(words), width + tuning.SITE_COST)
-
-    def _is_behind_line_end(self, rule: str, place: Address) -> bool:
-        """Return whether a place is after a line end, where lines are read and no part of one."""
-        elements = self.profile.sequence(rule, place[:-1]).elements
-        return place[-1] > 1 and self._ends_a_line(elements[place[-1] - 2])
-
-    def _ends_a_line(self, element: Element) -> bool:
-        """Return whether an element is a line end, or lines in a row."""
-        item = element.item if isinstance(element, Repeat) else element
-        if not isinstance(item, Reference):
-            return False
-        profile = self.profile
-        ends = {*profile.line_ends, self.recognizer.lexer.line_end}
-        return item.name in ends or (item is not element and profile.closing(item.name) is not None)
-
-    def _insertion_width(self, rule: str) -> int:
-        """Return the width of an insertion into a rule; less for a single reference."""
-        width = self.profile.width(rule)
-        return width - tuning.UNLIKELY_COST if self.profile.is_single_reference(rule) else width
+    def _parts(
+        self, reading: LineReading, start: int, site: Configuration, place: Address
+    ) -> Iterator[EditSite]:
+        """Yield insertions at a place, behind which the line continues at the same place."""
+        network = self._recognizer.network
+        rule = network.rule[site[0]]
+        base = network.entry[rule]
+        number = place[-1]
+        sequence = self._profile.sequence(rule, place[:-1])
+        is_inside = site[0] != base
+        is_last = (*place[:-1], number + 1) not in network.automata[rule].places[site[0] - base]
+        begins_loop = number == 1 and len(place) > 2
+        is_suffix = is_last and is_inside and not begins_loop
+        for end in reading.resuming(self._recognizer.at(site, reading.before(start)), start):
+            words = reading.words[start:end]
+            comes_next = reading.words[end][0] in self._profile.first(sequence, number)
+            # after all optional elements, except those that the line has next; before the first
+            # element of a rule only if that element itself comes next
+            is_prefix = is_inside or (
+                not self._similarity.gathers(rule) and len(words) <= tuning.LONGEST_PREFIX
+            )
+            if (comes_next and is_prefix) or is_suffix:
+                yield from self._insertions.at(rule, place, words)
+            yield from self._repetitions(rule, place, words)
 
     def _repetitions(self, rule: str, place: Address, words: Sequence[Token]) -> Iterator[EditSite]:
         """Yield the repetition of the operand before a place, with the signs between."""
         if place[-1] == 1:
             return
-        before = self.profile.sequence(rule, place[:-1]).elements[place[-1] - 2]
+        before = self._profile.sequence(rule, place[:-1]).elements[place[-1] - 2]
         if not isinstance(before, Reference) or before.is_token:
             return
         signs = self._signs_between(before.name, words)
-        is_operand = rule in self.phraser.matcher.value_rules
+        is_operand = rule in self._phraser.matcher.value_rules
         if signs and (is_operand or not any(keyword for _, keyword in signs)):
-            rank = self._insertion_width(rule) + tuning.REPETITION_COST
-            rank += self.phraser.breadth([before.name]) // tuning.REPETITION_BREADTH_PART
+            rank = self._insertions.width(rule) + tuning.REPETITION_COST
+            rank += self._phraser.breadth([before.name]) // tuning.REPETITION_BREADTH_PART
             yield EditSite("repetition", rule, place, signs, rank)
 
     def _signs_between(self, rule: str, words: Sequence[Token]) -> tuple[Token, ...]:
         """Return the signs in a row of signs and operands; none for anything else."""
-        matcher = self.phraser.matcher
+        matcher = self._phraser.matcher
         signs: list[Token] = []
         place = 0
         while place < len(words):
@@ -311,126 +145,154 @@ class EditSiteFinder:
         """Yield a known block that this line begins and that is not expected at this place."""
         if any(keyword for _, keyword in words):
             return
-        rank = self.profile.width(rule) + tuning.SITE_COST
-        elements = self.profile.sequence(rule, place[:-1]).elements
+        blocks = self._phraser.matcher.multi_line_rules([kind for kind, _ in words])
+        for block in blocks:
+            yield from self._as_alternative(rule, place, block)
+            if rule != self._grammar.start and self._profile.is_at_start(rule, place):
+                continue
+            rank = self._profile.width(rule) + tuning.SITE_COST + tuning.UNLIKELY_COST
+            for text in (f"{block}*", f"({block} {self._recognizer.lexer.line_end}*)*"):
+                yield rank, (Insert(rule, place, text),)
+
+    def _as_alternative(self, rule: str, place: Address, block: str) -> Iterator[RankedEdits]:
+        """Yield a block as one more alternative of the choice that comes next."""
+        profile = self._profile
+        elements = profile.sequence(rule, place[:-1]).elements
         following = elements[place[-1] - 1] if place[-1] <= len(elements) else None
         inner = following.item if isinstance(following, Repeat) else following
-        for block in self.phraser.matcher.multi_line_rules([kind for kind, _ in words]):
-            if isinstance(inner, Reference) and not inner.is_token and inner.name != block:
-                hub = inner.name
-                if len(self.grammar.by_name[hub].alternatives) > 1:
-                    end = self.profile.closing(hub)
-                    symbols = (block, end) if end else (block,)
-                    if not self.similarity.is_foreign(hub, symbols):
-                        worth = (
-                            self.profile.width(hub)
-                            + tuning.SITE_COST
-                            + self.similarity.dissimilarity(hub, symbols)
-                        )
-                        yield worth, (AddAlternative(hub, " ".join(symbols)),)
-            if rule != self.grammar.start and self.profile.is_at_start(rule, place):
-                continue
-            for text in (f"{block}*", f"({block} {self.recognizer.lexer.line_end}*)*"):
-                yield rank + tuning.UNLIKELY_COST, (Insert(rule, place, text),)
+        if not isinstance(inner, Reference) or inner.is_token or inner.name == block:
+            return
+        symbols = tuple(filter(None, (block, profile.closing(inner.name))))
+        if profile.has_choice(inner.name) and not self._similarity.is_foreign(inner.name, symbols):
+            rank = profile.width(inner.name) + tuning.SITE_COST
+            rank += self._similarity.dissimilarity(inner.name, symbols)
+            yield rank, (AddAlternative(inner.name, " ".join(symbols)),)
+
+    # ----------------------------------------------------------- something else in its place
 
     def _replacements(
-        self, rule: str, place: Address, element: Element, words: Sequence[Token]
+        self, reading: LineReading, start: int, site: Configuration, place: Address
     ) -> Iterator[EditSite]:
-        profile = self.profile
+        """Yield sites that accept tokens in place of the next element."""
+        rule = self._recognizer.network.rule[site[0]]
+        for after in self._after(site, place):
+            beyond = self._recognizer.at((after, site[1]), reading.before(start))
+            for end in reading.resuming(beyond, start):
+                words = reading.words[start:end]
+                yield from self._alternative(rule, place, words)
+                yield from self._widened(rule, place, words)
+
+    def _after(self, site: Configuration, place: Address) -> list[int]:
+        """Return the positions just after the element at ``place``; none behind the last one."""
+        network = self._recognizer.network
+        rule = network.rule[site[0]]
+        base, automaton = network.entry[rule], network.automata[rule]
+        elements = self._profile.sequence(rule, place[:-1]).elements
+        if place[-1] > len(elements):
+            return []
+        element = elements[place[-1] - 1]
+        if isinstance(element, Reference):
+            state = automaton.edges[site[0] - base].get(element.name)
+            return [] if state is None else [base + state]
+        following = (*place[:-1], place[-1] + 1)
+        return [base + s for s, at in enumerate(automaton.places) if following in at]
+
+    def _alternative(
+        self, rule: str, place: Address, words: tuple[Token, ...]
+    ) -> Iterator[EditSite]:
+        """Yield an alternative of the rule that is the element at a place."""
+        profile = self._profile
         elements = profile.sequence(rule, place[:-1]).elements
-        whole = len(place) == 2 and len(elements) == 1  # an alternative that is one element
-        called = element.name if isinstance(element, Reference) and not element.is_token else None
+        called = _called(elements[place[-1] - 1])
+        is_whole = len(place) == 2 and len(elements) == 1
         # another kind of statement belongs to the caller
-        if called and (profile.has_choice(called) or not (whole and profile.is_hub(rule))):
+        if called and (profile.has_choice(called) or not (is_whole and profile.is_hub(rule))):
             rank = profile.width(called) + tuning.SITE_COST
-            yield EditSite("alternative", called, (1, 1), tuple(words), rank)
-        leading = place[-1] == 1 and self.vocabulary.is_keyword(element)
-        closing = place[-1] == len(elements) and self.vocabulary.is_keyword(element)
-        word = len(words) == 1 and self._is_new_word(words[0])
-        if len(place) > 2 and len(elements) == 1:
-            return  # the same as with the group it is in
-        if called and profile.callers[called] == {rule}:
-            return  # the same as an alternative of that rule, which is called only here
-        if self._ends_a_line(element):
-            return  # a part of a line in place of lines
-        if whole or ((leading or closing) and (not word or rule in profile.blocks)):
-            return  # the same as an alternative; the words that begin and close a line or a block
-        if called and place[-1] == 1 and len(place) == 2 and profile.is_hub(rule):
-            return  # the same as an alternative of the rule or of the one it calls
-        if profile.is_at_start(rule, place) and len(words) > tuning.LONGEST_PREFIX:
-            return  # so long another beginning is a different construct
-        rank = profile.width(rule) + (
-            tuning.WIDEN_FIRST_WORD_COST if leading else tuning.WIDEN_COST
-        )
+            yield EditSite("alternative", called, (1, 1), words, rank)
+
+    def _widened(self, rule: str, place: Address, words: tuple[Token, ...]) -> Iterator[EditSite]:
+        """Yield the element at a place widened, where an alternative would not be the same."""
+        profile = self._profile
+        elements = profile.sequence(rule, place[:-1]).elements
+        element = elements[place[-1] - 1]
+        called, is_keyword = _called(element), self._vocabulary.is_keyword(element)
+        leading = place[-1] == 1 and is_keyword
+        closing = place[-1] == len(elements) and is_keyword
+        is_word = len(words) == 1 and profile.is_new_word(words[0])
+        if (
+            len(elements) == 1  # the same as an alternative, or as with the group it is in
+            # the same as an alternative of that rule, which is called only here
+            or (called and profile.callers[called] == {rule})
+            or profile.ends_a_line(element)  # a part of a line in place of lines
+            # the words that begin and close a line or a block
+            or ((leading or closing) and (not is_word or rule in profile.blocks))
+            # the same as an alternative of the rule or of the one it calls
+            or (called and place[-1] == 1 and len(place) == 2 and profile.is_hub(rule))
+            # so long another beginning is a different construct
+            or (len(words) > tuning.LONGEST_PREFIX and profile.is_at_start(rule, place))
+        ):
+            return
+        rank = profile.width(rule)
+        rank += tuning.WIDEN_FIRST_WORD_COST if leading else tuning.WIDEN_COST
         if leading and len(elements) < tuning.SHARED_ELEMENTS:
             rank += 2 * tuning.UNLIKELY_COST  # the two words have hardly anything in common
         if isinstance(element, Repeat):
             rank += tuning.UNLIKELY_COST  # one more kind of item in a loop that is for others
-        if self.vocabulary.is_keyword(element) and (len(words) > 1 or closing):
+        if is_keyword and (len(words) > 1 or closing):
             rank += tuning.UNLIKELY_COST
-        yield EditSite("widen", rule, place, tuple(words), rank)
+        yield EditSite("widen", rule, place, words, rank)
 
-    def _is_new_word(self, token: Token) -> bool:
-        """Return whether a token is a keyword that no rule uses."""
-        kind, keyword = token
-        lexer = self.recognizer.lexer
-        return keyword is not None or (
-            lexer.is_keyword(kind) and not self.vocabulary.is_written(lexer.names[kind])
-        )
+    # ------------------------------------------------------------------------- left out
 
     def _omissions(
-        self,
-        state: State,
-        site: Configuration,
-        place: Address,
-        words: list[Token],
-        start: int,
+        self, reading: LineReading, start: int, site: Configuration, place: Address
     ) -> Iterator[RankedEdits]:
-        network = self.recognizer.network
-        position, stack = site
-        rule = network.rule[position]
-        base = network.entry[rule]
-        places = network.automata[rule].places
-        sequence = self.profile.sequence(rule, place[:-1])
-        rest = [kind for kind, _ in words[start:]]
+        """Yield edits that make the next elements optional, if the line goes on behind them."""
+        network = self._recognizer.network
+        rule = network.rule[site[0]]
+        sequence = self._profile.sequence(rule, place[:-1])
         for count in range(1, tuning.MOST_SKIPPED + 1):
-            last = (*place[:-1], place[-1] + count)
-            if last[-1] > len(sequence.elements) + 1 or (
-                count == len(sequence.elements) and len(place) == 2
-            ):
+            last = place[-1] + count
+            is_all = count == len(sequence.elements) and len(place) == 2
+            if last > len(sequence.elements) + 1 or is_all:
                 return
             if count == 1 and _may_be_left_out(sequence.elements[place[-1] - 1]):
                 continue
-            for target in (base + s for s, at in enumerate(places) if last in at):
-                _, failed = self.recognizer.run(self.recognizer.at((target, stack), state), rest)
+            for position, at in enumerate(network.automata[rule].places, network.entry[rule]):
+                if (*place[:-1], last) not in at:
+                    continue
+                state = self._recognizer.at((position, site[1]), reading.before(start))
+                failed = reading.fails_behind(state, start)
                 if failed is None or failed > 1:
-                    rank = self.profile.width(rule) + tuning.SITE_COST + count
-                    left_out = sequence.elements[place[-1] - 1 : last[-1] - 1]
-                    is_end = place[-1] == 1 or last[-1] > len(sequence.elements)
-                    if is_end and any(map(self.vocabulary.is_keyword, left_out)):
-                        if rule in self.profile.blocks:
-                            break  # the words that open and close a block
-                        is_whole = failed is None and self.recognizer.lexer.is_keyword(rest[0])
-                        rank += 0 if is_whole else 2 * tuning.UNLIKELY_COST
-                    yield rank, (MakeOptional(rule, place, count),)
+                    goes_on = failed is None and self._begins_with_a_word(reading, start)
+                    steps = self._omission_cost(rule, sequence, place[-1], last, goes_on=goes_on)
+                    if steps is not None:
+                        yield steps + count, (MakeOptional(rule, place, count),)
                     break
 
-    def _after(
-        self,
-        site: Configuration,
-        places: tuple[frozenset[Address], ...],
-        place: Address,
-        base: int,
-    ) -> list[int]:
-        """Return the positions just after the element at ``place``."""
-        following = (*place[:-1], place[-1] + 1)
-        network = self.recognizer.network
-        rule = network.rule[site[0]]
-        element = self.profile.sequence(rule, place[:-1]).elements[place[-1] - 1]
-        if isinstance(element, Reference):
-            state = network.automata[rule].edges[site[0] - base].get(element.name)
-            return [] if state is None else [base + state]
-        return [base + s for s, at in enumerate(places) if following in at]
+    def _begins_with_a_word(self, reading: LineReading, start: int) -> bool:
+        return self._recognizer.lexer.is_keyword(reading.words[start][0])
+
+    def _omission_cost(
+        self, rule: str, sequence: Alternative, first: int, last: int, *, goes_on: bool
+    ) -> int | None:
+        """Return the steps of leaving out the elements from ``first`` on, ``last`` not included.
+
+        Returns ``None`` for the words that open and close a block.
+        """
+        steps = self._profile.width(rule) + tuning.SITE_COST
+        left_out = sequence.elements[first - 1 : last - 1]
+        is_end = first == 1 or last > len(sequence.elements)
+        if not is_end or not any(map(self._vocabulary.is_keyword, left_out)):
+            return steps
+        if rule in self._profile.blocks:
+            return None
+        return steps if goes_on else steps + 2 * tuning.UNLIKELY_COST
+
+
+def _called(element: Element) -> str | None:
+    """Return the rule that an element is, if it is one."""
+    return element.name if isinstance(element, Reference) and not element.is_token else None
 
 
 def _may_be_left_out(element: Element) -> bool:

@@ -10,7 +10,8 @@ from dataclasses import asdict
 from typing import cast
 
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cluster import Cluster, Clusters, Member
+from recovery.clustering.cluster import Cluster, Clusters
+from recovery.clustering.distinct_lines import Member
 from recovery.record.failure_records import failure_records
 from recovery.record.proposal_review import Reviewer
 from recovery.record.record_types import (

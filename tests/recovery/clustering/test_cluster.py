@@ -9,7 +9,8 @@ import pytest
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.cluster import Cluster, Clusters, Member, cluster
+from recovery.clustering.cluster import Cluster, Clusters, cluster
+from recovery.clustering.distinct_lines import Member
 from recovery.clustering.edit_trial import edited
 from recovery.clustering.negative_score import negative_counter
 from recovery.negatives.negatives import Negative

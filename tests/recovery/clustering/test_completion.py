@@ -9,7 +9,7 @@ from grammar.notation.g4 import read
 from recovery.clustering.cause import Cause
 from recovery.clustering.completion import completed, continued
 from recovery.clustering.negative_score import Rivals
-from tests.recovery.clustering.test_merged_causes import (
+from tests.recovery.clustering.test_joined_causes import (
     GRAMMAR,
     gathering,
     mends_all,

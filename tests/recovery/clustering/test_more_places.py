@@ -6,7 +6,7 @@ from recovery.clustering.cause import Cause
 from recovery.clustering.more_places import with_more_places
 from recovery.clustering.negative_score import NegativeCounter, no_negatives
 from recovery.clustering.search import CauseSearch
-from tests.recovery.clustering.test_merged_causes import search_in
+from tests.recovery.clustering.test_joined_causes import search_in
 
 GRAMMAR = read("""grammar S;
 program : head* BODY NEWLINE line* EOF ;

@@ -8,7 +8,11 @@ from grammar.notation.g4 import read
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, Proposal
-from recovery.clustering.causes import merged_by_edits, merged_by_first_word, merged_by_reason
+from recovery.clustering.joined_causes import (
+    joined_by_edits,
+    joined_by_first_word,
+    joined_by_reason,
+)
 from recovery.clustering.negative_score import NegativeCounter, Rivals, no_negatives
 from recovery.clustering.search import CauseSearch
 from recovery.proposals.edit_site import LinePattern
@@ -86,7 +90,7 @@ def mends_all(proposal: Proposal) -> bool:
 def test_words_at_one_place_have_one_cause() -> None:
     """Two signs that are missing in one place become a choice of both, in place of the first."""
     searched = search()
-    [one] = merged_by_edits(searched, apart(searched))
+    [one] = joined_by_edits(searched, apart(searched))
     assert (0, 1, 2, 3) == one.lines
     assert (Widen("line", (1, 3), "('<' | '>')"),) == one.proposals[0].edits
     assert mends_all(one.proposals[0])
@@ -96,7 +100,7 @@ def test_words_at_one_place_have_one_cause() -> None:
 def test_lines_that_begin_alike_are_searched_together() -> None:
     """What mends all of them is found though each cause had an edit of its own."""
     searched = search()
-    [one] = merged_by_first_word(searched, apart(searched))
+    [one] = joined_by_first_word(searched, apart(searched))
     assert (0, 1, 2, 3) == one.lines
     assert mends_all(one.proposals[0])
 
@@ -110,7 +114,7 @@ def test_causes_stay_apart_where_the_edit_for_both_lets_in_more() -> None:
 
     searched = search(count_negatives)
     causes = apart(searched)
-    assert causes == merged_by_edits(searched, causes)
+    assert causes == joined_by_edits(searched, causes)
 
 
 def test_a_cause_that_nothing_mends_is_left_as_it_is() -> None:
@@ -118,19 +122,19 @@ def test_a_cause_that_nothing_mends_is_left_as_it_is() -> None:
     searched = search()
     hopeless = Cause((3,), ())
     first, _ = apart(searched)
-    assert [first, hopeless] == merged_by_edits(searched, [first, hopeless])
-    assert [first, hopeless] == merged_by_first_word(searched, [first, hopeless])
+    assert [first, hopeless] == joined_by_edits(searched, [first, hopeless])
+    assert [first, hopeless] == joined_by_first_word(searched, [first, hopeless])
 
 
 def test_causes_of_one_reason_are_one() -> None:
     """They have the proposals of all, and what is found for all lines."""
     searched = search()
     causes = apart(searched)
-    [one] = merged_by_reason(searched, causes, [("sign",)] * 4)
+    [one] = joined_by_reason(searched, causes, [("sign",)] * 4)
     assert (0, 1, 2, 3) == one.lines
     assert {(LESS,), (MORE,)} < {p.edits for p in one.proposals}
     assert mends_all(one.proposals[0])
-    assert causes == merged_by_reason(searched, causes, [("<",), ("<",), (">",), (">",)])
+    assert causes == joined_by_reason(searched, causes, [("<",), ("<",), (">",), (">",)])
 
 
 def test_causes_that_need_the_same_word_are_one() -> None:
@@ -142,16 +146,16 @@ def test_causes_that_need_the_same_word_are_one() -> None:
         Cause(lines, (searched.proposal((new, edit), 0),))
         for lines, edit in (((0, 1), LESS), ((2, 3), MORE))
     ]
-    [one] = merged_by_reason(searched, causes, [("<",), ("<",), ("word", "WORD"), (">",)])
+    [one] = joined_by_reason(searched, causes, [("<",), ("<",), ("word", "WORD"), (">",)])
     assert (0, 1, 2, 3) == one.lines
-    assert causes == merged_by_reason(searched, causes, [("<",), ("<",), *[("word", "OTHER")] * 2])
+    assert causes == joined_by_reason(searched, causes, [("<",), ("<",), *[("word", "OTHER")] * 2])
     searched.lines = [*searched.lines[:2], *search().lines[2:]]
-    assert causes == merged_by_reason(searched, causes, [("<",), ("<",), ("word", "WORD"), (">",)])
+    assert causes == joined_by_reason(searched, causes, [("<",), ("<",), ("word", "WORD"), (">",)])
 
 
 def test_causes_that_add_uncalled_rules_to_one_rule_are_one() -> None:
     """What had gathered these rules is missing."""
     searched, added = gathering()
     causes = [Cause((n,), (searched.proposal((edit,), 0),)) for n, edit in enumerate(added)]
-    united = merged_by_reason(searched, causes, [(word,) for word in "abcde"])
+    united = joined_by_reason(searched, causes, [(word,) for word in "abcde"])
     assert [(0, 1, 2), (3, 4)] == [cause.lines for cause in united]
