@@ -92,7 +92,7 @@ class Controller:
     ) -> None:
         script = script or Script()
         state = ControllerState(profile, trace, machine, values or {})
-        outputs = OutputSwitch(state.clock, state.variables, state.signals)
+        outputs = OutputSwitch(state.variables, state.signals)
         arm = ArmControl(core(outputs.switch), state.clock, state.variables)
         frames = FramesInForce(state.variables, machine, arm.core)
         follower = follower or Nobody(arm.core.arm)

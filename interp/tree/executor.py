@@ -147,7 +147,6 @@ class TreeExecutor:
         deferred, guard = self._run.deferred(code), self._run.guard
         depth, cells, skips = self._run.depth, self._run.cells, self._run.skips
         functions = self._run.functions  # how often a condition is evaluated differs
-        self._run.guard = Guard.OFF  # it applies to statements, not to a condition
         self._run.skips = False
         frame = deferred.frame.for_code(deferred.frame.unit.line(deferred.node))
         node: Any = deferred.node

@@ -76,6 +76,22 @@ def _pieces(pattern: str) -> Iterator[str | _Specification]:
             raise _Mismatch
 
 
+def _conversions(pattern: str, count: int) -> Iterator[tuple[str | _Specification, int]]:
+    """Yield each piece of a format with the number of the variable that it converts.
+
+    Raise `_Mismatch` where one of ``count`` variables, or a specification, has no counterpart.
+    """
+    number = 0
+    for piece in _pieces(pattern):
+        is_specification = not isinstance(piece, str)
+        if is_specification and number in (count, _MOST):
+            raise _Mismatch
+        yield piece, number
+        number += is_specification
+    if number != count:
+        raise _Mismatch
+
+
 def _count(digits: str | None) -> int | None:
     return int(digits) if digits else None
 
@@ -114,20 +130,13 @@ def swrite(
     text: ArrayValue = copied(target)
     end, hits, result = start, 0, "CMD_OK"
     try:
-        for piece in _pieces(text_of(pattern)):
-            if isinstance(piece, str):
-                written = piece
-            elif hits in (len(values), _MOST):
-                raise _Mismatch
-            else:
-                written = _written(piece, known(values[hits]))
+        for piece, number in _conversions(text_of(pattern), len(values)):
+            written = piece if isinstance(piece, str) else _written(piece, known(values[number]))
             if end + len(written) > len(text):
                 raise _Mismatch
             text.elements[end : end + len(written)] = written
             end += len(written)
             hits += not isinstance(piece, str)
-        if hits != len(values):
-            raise _Mismatch
     except _Mismatch:
         result = "FMT_ERR"
     return None, {0: text, 1: state_value(result, hits, end - start), 2: end}
@@ -189,13 +198,15 @@ def _digits(specification: _Specification, value: Value) -> tuple[str, str, str]
 
 # ------------------------------------------------------------------------------- SREAD
 
-#: The syntax of a number by the letter of its specification.
-_NUMBERS: Mapping[str, re.Pattern[str]] = {
+#: What is read, by the letter of its specification.
+_FORMS: Mapping[str, re.Pattern[str]] = {
     **dict.fromkeys("di", INTEGER),
-    "u": re.compile(r"[0-9]+"),
-    "x": re.compile(r"(?:0[xX])?[0-9a-fA-F]+"),
+    "u": re.compile("[0-9]+"),
+    "x": re.compile("(?:0[xX])?[0-9a-fA-F]+"),
     **dict.fromkeys("efg", DECIMAL),
+    "s": re.compile("[^ ]+"),
 }
+_BLANKS = re.compile(" *")
 
 
 def sread(
@@ -219,38 +230,30 @@ def sread(
     changes: dict[int, Value] = {}
     end, result = start, "CMD_OK"
     try:
-        for piece in _pieces(text_of(pattern)):
+        for piece, number in _conversions(text_of(pattern), len(variables)):
             if isinstance(piece, str):
-                end = _skipped(given, end, piece)
-            elif len(changes) in (len(variables), _MOST):
-                raise _Mismatch
+                end = _match(re.compile(_literal(piece)), given, end).end()
             else:
-                value, end = _read(given, end, piece)
-                changes[4 + len(changes)] = value
-        if len(changes) != len(variables):
-            raise _Mismatch
+                changes[4 + number], end = _read(given, end, piece)
     except _Mismatch:
         result = "FMT_ERR"
     hits = len(changes)
     return None, {1: state_value(result, hits, end - start), 2: end, **changes}
 
 
-def _skipped(text: str, place: int, expected: str) -> int:
-    """Return the place after the literal text that the format expects."""
-    for letter in expected:
-        if letter == " ":
-            place = _blanks(text, place)
-        elif text.startswith(letter, place):
-            place += 1
-        else:
-            raise _Mismatch
-    return place
+def _literal(piece: str) -> str:
+    """Return the pattern of the text that a format expects; of blanks there may be any number."""
+    return " *".join(map(re.escape, re.split(" +", piece)))
 
 
-def _blanks(text: str, place: int) -> int:
-    while text.startswith(" ", place):
-        place += 1
-    return place
+def _match(
+    form: re.Pattern[str] | None, text: str, place: int, width: int | None = None
+) -> re.Match[str]:
+    """Return what matches at a place; raise `_Mismatch` if nothing does."""
+    match = form and form.match(text, place, place + (width or len(text)))
+    if not match:
+        raise _Mismatch
+    return match
 
 
 def _read(text: str, place: int, specification: _Specification) -> tuple[Value, int]:
@@ -259,31 +262,25 @@ def _read(text: str, place: int, specification: _Specification) -> tuple[Value, 
     if flags or precision is not None:
         raise _Mismatch
     if letter == "c":
-        found = text[place : place + (width or 1)]
-        if len(found) < (width or 1):
-            raise _Mismatch
-        return found, place + len(found)
-    place = _blanks(text, place)
-    most = len(text) if width is None else place + width
-    if letter == "s":
-        found = text[place:most].partition(" ")[0]
-        if not found:
-            raise _Mismatch
-        return found, place + len(found)
-    match = _NUMBERS[letter].match(text, place, most) if letter in _NUMBERS else None
-    number = None if match is None else _number(letter, match[0])
-    if match is None or number is None:
+        found = _match(re.compile(f"(?s:.{{{width or 1}}})"), text, place)
+    else:
+        place = _match(_BLANKS, text, place).end()
+        found = _match(_FORMS.get(letter), text, place, width)
+    value = _value(letter, found[0])
+    if value is None:
         raise _Mismatch
-    return number, match.end()
+    return value, found.end()
 
 
-def _number(letter: str, digits: str) -> int | float | None:
-    """Return the number that the digits denote, or ``None`` if it is too large."""
+def _value(letter: str, found: str) -> Value | None:
+    """Return what a text denotes, or ``None`` if the number is too large."""
+    if letter in "cs":
+        return found
     if letter in "efg":
-        return real_of(digits)
+        return real_of(found)
     if letter in "di":
-        return integer_of(digits)
-    number = int(digits, 16) if letter == "x" else float(digits)  # of thousands of digits, too
+        return integer_of(found)
+    number = int(found, 16) if letter == "x" else float(found)  # of thousands of digits, too
     if number > 0xFFFFFFFF:
         return None
     return int(number) - (1 << 32) if number > INT_MAX else int(number)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import deque
 
-from interp.controller.state.clock import Clock
 from interp.controller.state.signals import Change, Signals
 from interp.controller.state.variables import Variables
 from interp.port.requests import Path, Value
@@ -17,20 +16,15 @@ from interp.port.requests import Path, Value
 class OutputSwitch:
     """Switches outputs for a control core."""
 
-    def __init__(self, clock: Clock, variables: Variables, signals: Signals) -> None:
-        self._clock = clock
+    def __init__(self, variables: Variables, signals: Signals) -> None:
         self._variables = variables
         self._signals = signals
         self._changes: deque[list[Change]] = deque()
 
-    def switch(self, path: Path, value: Value, time: int) -> None:
-        """Write a system variable at a time in µs. Raises `Fault`."""
-        now, self._clock.now = self._clock.now, time
-        try:
-            with self._signals.deferred() as changes:
-                self._variables.write(path, value)
-        finally:
-            self._clock.now = now
+    def switch(self, path: Path, value: Value, _time: int) -> None:
+        """Write a system variable at this time, which the clock shows. Raises `Fault`."""
+        with self._signals.deferred() as changes:
+            self._variables.write(path, value)
         self._changes.append(changes)
 
     def next_changes(self) -> list[Change]:

@@ -373,12 +373,10 @@ def _externals(target: Target) -> list[float]:
 def _with_parameters(text: str, parameters: Any) -> str:
     """Return the text of a message, with its parameters in place of %1 to %3."""
     for place, one in enumerate(parameters or (), start=1):
-        for name in ("PAR_TXT", "PAR_INT", "PAR_REAL", "PAR_BOOL"):
-            value: Any = one.get(name)
-            shown = text_of(value) if name == "PAR_TXT" else value
-            if shown is not None and shown != "":
-                text = text.replace(f"%{place}", str(shown))
-                break
+        values = [text_of(one.get("PAR_TXT")) or None]
+        values += map(one.get, ("PAR_INT", "PAR_REAL", "PAR_BOOL"))
+        shown = next((str(value) for value in values if value is not None), f"%{place}")
+        text = text.replace(f"%{place}", shown)
     return text
 
 

@@ -88,7 +88,7 @@ class Waits:
         if task.name == "robot":
             return clock.next_tick
         period = clock.cycle * self._state.profile.submit_every
-        return clock.now - clock.now % period + period
+        return (clock.now // period + 1) * period
 
     def wait(self, task: Task, request: Wait) -> Answer:
         """WAIT SEC: wait for a time; a time of zero or less is no wait [CTL-12]."""

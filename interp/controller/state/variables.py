@@ -101,9 +101,7 @@ class Variables:
     def stops(self, name: str, *, is_write: bool) -> bool:
         """Return whether an access stops the advance run."""
         entry = self.entry(name)
-        if entry is None:
-            return False
-        return bool(entry.stops_on_write if is_write else entry.stops_on_read)
+        return entry is not None and bool(entry.stops_on_write if is_write else entry.stops_on_read)
 
     def type_of(self, name: str) -> Type:
         """Return the type of a variable; `UNKNOWN` if it is not in a table."""
