@@ -12,6 +12,7 @@ same prefix.
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from enum import Enum
 
@@ -64,7 +65,7 @@ class Typos:
         self._shortest = shortest
         self._names: dict[str, tuple[str, Series]] = {} if known is None else known._names.copy()
         self._known: Mapping[str, Sequence[str]] = {} if known is None else known._keys
-        self._keys: dict[str, list[str]] = {}
+        self._keys: defaultdict[str, list[str]] = defaultdict(list)
         self.prefixes: set[str] = set() if known is None else known.prefixes.copy()
         self.add(names, series)
 
@@ -76,7 +77,7 @@ class Typos:
             if key not in self._names and self._shortest <= len(key) <= _LONGEST:
                 self._names[key] = name, series
                 for shorter in _shortened(key):
-                    self._keys.setdefault(shorter, []).append(key)
+                    self._keys[shorter].append(key)
 
     def meant(
         self, name: str, *, has_slipped: bool = False, has_plurals: bool = True
@@ -99,7 +100,7 @@ class Typos:
 
 
 def _shortened(key: str) -> list[str]:
-    return [key, *(key[:index] + key[index + 1 :] for index in range(len(key)))]
+    return [key, *[key[:index] + key[index + 1 :] for index in range(len(key))]]
 
 
 def small_prefix(name: str) -> str:

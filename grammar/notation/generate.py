@@ -7,7 +7,6 @@ the files. ``--verify`` generates afresh and compares byte for byte.
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import os
 import shutil
@@ -130,6 +129,8 @@ def _verify() -> str | None:
 
 def main() -> int:
     """Entry point; exit status 0 fine, 1 stale, 2 ANTLR could not be run."""
+    import argparse  # every command imports this module for its paths
+
     parser = argparse.ArgumentParser(
         prog="python -m grammar.notation.generate", description=__doc__
     )

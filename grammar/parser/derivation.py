@@ -8,9 +8,9 @@ token is reached by the derivation that ANTLR chooses: at each decision from lef
 first alternative with which the text can be read.
 
 For each core and kind of token, back pointers are computed once: from which configuration each one
-of the next core comes. A file is read forward, remembering the core at each token, and then traced
-backward from its last configuration, as in the Viterbi algorithm. This costs a few look-ups for
-each token, whatever the depth of nesting.
+of the next core comes. A file is read forward, remembering the cores, and then traced backward from
+its last configuration, as in the Viterbi algorithm. This costs a few look-ups for each token,
+whatever the depth of nesting, and for a line that was read from the same core before only a few.
 
 A rule that is called as the last element of its caller ends together with it. Such a tail call is
 marked and pushes nothing, so right recursion of any depth ends in one step.
@@ -23,12 +23,15 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grammar.notation.model import Grammar
-from grammar.parser.lazy_automaton import Automaton, Configuration, Core, Stack
+from grammar.parser.lazy_automaton import Automaton, Configuration, Core, Stack, Tail
 from grammar.parser.lexer import Lexer
 from grammar.parser.ordered_network import ordered_automaton
 from support.lazy_dataclass import dataclass
 
 _END = -1  # the position after the end of a rule
+# The cache of lines is bounded, and enormous lines are not cached at all.
+_MOST_REMEMBERED = 20_000
+_LONGEST_REMEMBERED = 1_000
 
 
 class Begin(NamedTuple):
@@ -53,12 +56,31 @@ class Action(NamedTuple):
 class Derivation:
     """The derivation of a text: an action number for each token, the end of file included.
 
-    ``is_unique`` means that no second derivation was met. Two derivations can still give the same
-    tree, if a rule has two equal alternatives.
+    ``lines`` has the actions of each line, with those of the blank lines behind it. ``is_unique``
+    means that no second derivation was met. Two derivations can still give the same tree, if a rule
+    has two equal alternatives.
     """
 
-    actions: Sequence[int]
+    lines: Sequence[tuple[int, ...]]
     is_unique: bool
+
+
+class _Passage:
+    """The way over a line, given by its token ``kinds``: the cores before each, and that ``after``.
+
+    ``frames`` are pushed on the tail, the lowest first. ``traced`` has, by the index of a
+    configuration of the core after the line, that of the one before it from which it comes, the
+    actions, and whether they are the only ones.
+    """
+
+    __slots__ = ("after", "cores", "frames", "kinds", "traced")
+
+    def __init__(self, kinds: tuple[int, ...]) -> None:
+        self.kinds = kinds
+        self.cores: list[Core] = []
+        self.frames: list[int] = []
+        self.traced: dict[int, tuple[int, tuple[int, ...], bool]] = {}
+        self.after: Core
 
 
 class _Way(NamedTuple):
@@ -98,10 +120,14 @@ class _Rules:
         self.start = self._entry[grammar.start]
         self._ways: dict[int, list[_Way]] = {}
         self._on: dict[tuple[int, int], list[_Way]] = {}
+        self._ends: dict[int, bool] = {}
 
     def ends(self, position: int) -> bool:
         """Return whether the rule may end at a position."""
-        return any(way.kind is None for way in self.ways(position))
+        found = self._ends.get(position)
+        if found is None:
+            found = self._ends[position] = any(way.kind is None for way in self.ways(position))
+        return found
 
     def on(self, position: int, kind: int) -> list[_Way]:
         """Return the steps from a position that read this kind of token or leave the rule."""
@@ -179,33 +205,74 @@ class Deriver(Automaton):
         # back pointers: for each core, token kind and configuration of the next core, the index of
         # the configuration it comes from, the number of the action, and whether it is the only one
         self._back: dict[Core, dict[int, tuple[tuple[int, int, bool], ...]]] = {}
+        self._passages: dict[tuple[Core, tuple[int, ...]], _Passage] = {}
         self._start = self._core(((self._rules.start, self._bottom),))
 
     def derive(self, kinds: Sequence[int]) -> Derivation | None:
         """Return the derivation of a text, given by its token kinds; ``None`` if it is invalid."""
         core, tail = self._start, self._no_tail
-        trail: list[Core] = []
-        for kind in kinds:
-            try:
-                following = core[kind]
-            except KeyError:
+        trail: list[_Passage] = []
+        for line in _lines(kinds, self.line_kind):
+            core, tail = self._settled(core, tail)
+            passage = self._passages.get((core, line))
+            if passage is not None:
+                tail = tail.pushed(passage.frames)
+            else:
+                passage = _Passage(line)
+                passed = self._passed(passage, core, tail)
+                if passed is None:
+                    return None
+                tail = passed
+            trail.append(passage)
+            core = passage.after
+        place, is_unique = 0, True
+        lines: list[tuple[int, ...]] = []
+        for passage in reversed(trail):
+            place, actions, is_sole = passage.traced.get(place) or self._traced(passage, place)
+            lines.append(actions)
+            if not is_sole:
+                is_unique = False
+        lines.reverse()
+        return Derivation(lines, is_unique)
+
+    def _passed(self, passage: _Passage, core: Core, tail: Tail) -> Tail | None:
+        """Read the line of a passage; return the tail after it, ``None`` if it cannot be read.
+
+        The passage is kept if it is the same for every tail: if no token but the first, before
+        which frames are taken back in any case, needs frames of it.
+        """
+        start = core
+        is_same = True
+        for kind in passage.kinds:
+            following = core.get(kind)
+            if following is None:
+                is_same &= not (passage.cores and core.is_open)
                 core, tail = self._settled(core, tail)
                 stepped = self._step(core, tail, kind)
                 if stepped is None:
                     return None
                 following, tail = stepped
-            trail.append(core)
+                if kind in core.pushes:
+                    passage.frames += core.pushes[kind][1]
+            passage.cores.append(core)
             core = following
-        place, is_unique = 0, True
+        passage.after = core
+        if is_same and len(passage.kinds) <= _LONGEST_REMEMBERED:
+            if len(self._passages) >= _MOST_REMEMBERED:
+                self._passages.clear()
+            self._passages[start, passage.kinds] = passage
+        return tail
+
+    def _traced(self, passage: _Passage, place: int) -> tuple[int, tuple[int, ...], bool]:
+        """Trace a passage backward from a configuration of the core after it."""
+        at, is_unique = place, True
         actions: list[int] = []
-        back = self._back
-        for core, kind in zip(reversed(trail), reversed(kinds), strict=True):
-            place, action, is_sole = back[core][kind][place]
+        for core, kind in zip(reversed(passage.cores), reversed(passage.kinds), strict=True):
+            at, action, is_sole = self._back[core][kind][at]
             actions.append(action)
-            if not is_sole:
-                is_unique = False
-        actions.reverse()
-        return Derivation(actions, is_unique)
+            is_unique &= is_sole
+        found = passage.traced[place] = at, tuple(reversed(actions)), is_unique
+        return found
 
     # ---------------------------------------------------------------------- the automaton
 
@@ -250,3 +317,17 @@ class Deriver(Automaton):
         if number == len(self.actions):
             self.actions.append(action)
         return number
+
+
+def _lines(kinds: Sequence[int], line_kind: int) -> Iterator[tuple[int, ...]]:
+    """Yield the token kinds of each line with the blank lines behind it."""
+    start, count = 0, len(kinds)
+    while start < count:
+        try:
+            end = kinds.index(line_kind, start) + 1
+            while kinds[end] == line_kind:  # the end of the file is the last token
+                end += 1
+        except ValueError:
+            end = count
+        yield tuple(kinds[start:end])
+        start = end

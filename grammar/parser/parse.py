@@ -14,6 +14,7 @@ empty rounds such a loop has in the tree is not specified.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 from grammar.parser.derivation import Action, Begin, Deriver, Steps
 from grammar.parser.recognizer import Recognizer, State
@@ -54,7 +55,7 @@ class Parser:
         self.recognizer = recognizer
         self._deriver = Deriver(recognizer.grammar, recognizer.lexer)
         self._ends: list[int] = []  # rules that end before a token, by the number of its action
-        self._changes: dict[tuple[int, ...], tuple[_Change, ...]] = {}
+        self._changes: dict[tuple[tuple[int, ...], int], tuple[_Change, ...]] = {}
         self._outlines: dict[tuple[str, tuple[Outline | int, ...]], Outline] = {}
 
     def parse(self, text: str) -> Tree | Stop:
@@ -76,17 +77,21 @@ class Parser:
             nothing = Tree(text, lexer, kinds, lexemes, offsets, Outline("", ()), True)
             offset = offsets[index]
             return Stop(*nothing.place(offset), offset, lexemes[index], state)
-        outline = self._assembled(kinds, derivation.actions)
+        outline = self._assembled(derivation.lines)
         return Tree(text, lexer, kinds, lexemes, offsets, outline, derivation.is_unique)
 
     # --------------------------------------------------------------------------- outlines
 
-    def _assembled(self, kinds: Sequence[int], actions: Sequence[int]) -> Outline:
+    def _assembled(self, lines: Sequence[tuple[int, ...]]) -> Outline:
         """Return the outline of a text; rules that are still open at its end are closed there."""
         children: list[Outline | int] = []
         rules = [Begin(self.recognizer.grammar.start, False)]
         outer: list[list[Outline | int]] = []
-        for line in self._lines(kinds, actions):
+        ends = self._ends
+        ends += [_ending(steps) for steps, _ in self._deriver.actions[len(ends) :]]
+        # what is complete with its line ends on it, though only the next token shows it
+        behind = [*(ends[line[0]] for line in lines[1:]), 0]
+        for line in zip(lines, behind, strict=True):
             for change in self._changes_of(line):
                 if change is None:
                     is_last = True
@@ -107,53 +112,39 @@ class Parser:
             children.append(outline)
         return Outline(rules.pop().rule, tuple(children))
 
-    def _lines(self, kinds: Sequence[int], actions: Sequence[int]) -> Iterator[tuple[int, ...]]:
-        """Yield the actions of each line with the blank lines behind it, then the rules that end.
-
-        These end before the next token, so that what is complete with its line ends on it.
-        """
-        ends = self._ends
-        ends += [_ending(steps) for steps, _ in self._deriver.actions[len(ends) :]]
-        start, count, line_kind = 0, len(kinds), self.recognizer.line_kind
-        while start < count:
-            try:
-                end = kinds.index(line_kind, start) + 1
-                while kinds[end] == line_kind:  # the end of the file is the last token
-                    end += 1
-            except ValueError:
-                end = count
-            yield (*actions[start:end], ends[actions[end]] if end < count else 0)
-            start = end
-
-    def _changes_of(self, line: tuple[int, ...]) -> tuple[_Change, ...]:
+    def _changes_of(self, line: tuple[tuple[int, ...], int]) -> tuple[_Change, ...]:
+        """Return the effects of a line, given by its actions and how many rules end behind it."""
         found = self._changes.get(line)
         if found is None:
             if max(len(self._changes), len(self._outlines)) >= _MOST_REMEMBERED:
                 self._changes.clear()
                 self._outlines.clear()
-            numbered = self._deriver.actions
-            actions = [numbered[number] for number in line[:-1]]
-            found = tuple(self._effects_of(actions, line[-1]))
-            if len(line) <= _LONGEST_REMEMBERED:
+            numbers, ends = line
+            actions = [self._deriver.actions[number] for number in numbers]
+            found = tuple(self._effects_of(actions, ends))
+            if len(numbers) < _LONGEST_REMEMBERED:
                 self._changes[line] = found
         return found
 
     def _effects_of(self, actions: Sequence[Action], ends: int) -> Iterator[_Change]:
         """Yield the effects of a line on the stack of open rules; ``ends`` rules end behind it."""
-        changes: list[_Change] = []
+        changes: list[Any] = []
         begun: list[tuple[Begin, list[Outline | int]]] = []
+        inner = changes  # of the innermost rule that began on the line
         events = [event for steps, kind in actions for event in (*steps, kind)]
         ended = _ending(actions[0].steps)  # with the line before
         for event in (*events[ended:], *[None] * ends):
             if isinstance(event, int):  # the kind of a token
-                (begun[-1][1] if begun else changes).append(event)
+                inner.append(event)
                 continue
             if event is not None:
-                begun.append((event, []))
+                inner = []
+                begun.append((event, inner))
                 continue
             while begun:
                 (rule, is_last), inside = begun.pop()
-                (begun[-1][1] if begun else changes).append(self._shared(rule, tuple(inside)))
+                inner = begun[-1][1] if begun else changes
+                inner.append(self._shared(rule, tuple(inside)))
                 if not is_last:
                     break
             else:  # the rule that ends began on an earlier line

@@ -22,7 +22,7 @@ from grammar.parser.recognizer import Recognizer
 from grammar.parser.tree import Outline, Tree
 from grammar.syntax import ast
 from grammar.syntax.ast import Span
-from grammar.syntax.node_plans import MAX_DEPTH, Plan, TooDeep, draft
+from grammar.syntax.node_plans import MAX_DEPTH, Drafter, Plan, TooDeep
 from grammar.syntax.parts import Field, Part, at, each, has, one, value_of, values_of
 from grammar.syntax.statement_rules import CHAINS, RULES
 from support.lazy_dataclass import dataclass
@@ -75,6 +75,7 @@ class Builder:
         self.parser = Parser(recognizer)
         self.failures = FailureFinder(recognizer)
         self._names = recognizer.lexer.names
+        self._drafter = Drafter(self._names, RULES, CHAINS)
         self._plans: dict[Outline | int, Plan] = {}
 
     def read(self, text: str, path: str = "") -> ast.Module | list[SyntaxFailure]:
@@ -137,7 +138,7 @@ class Builder:
         if not isinstance(outline, Outline) or outline.rule in _BLOCKS:
             return None
         try:
-            plan = draft(_without_end(outline), self._names, RULES, CHAINS)
+            plan = self._drafter.plan(_without_end(outline))
         except TooDeep as error:
             raise TooDeep(first + error.first) from None
         if outline.width <= _WIDEST_REMEMBERED:

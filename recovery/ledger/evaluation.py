@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 
 from grammar.parser.ambiguity import is_ambiguous
 from grammar.parser.derivation import Deriver, Steps
@@ -109,7 +110,7 @@ def _reading(recognizer: Recognizer, text: str) -> _Reading | None:
     found = deriver.derive(kinds)
     if found is None:
         return None
-    actions = (deriver.actions[number] for number in found.actions)
+    actions = (deriver.actions[number] for number in chain.from_iterable(found.lines))
     return tuple((action.steps, recognizer.lexer.names[action.kind]) for action in actions)
 
 

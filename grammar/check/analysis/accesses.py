@@ -34,11 +34,13 @@ class Use(Enum):
 class Access:
     """An access to a variable in a statement, with the node of its name.
 
-    ``place`` is the accessed expression with indices and components. ``to`` is the parameter that
-    receives it, if it is an argument of a routine of the project.
+    ``key`` is the name in upper case, ``place`` the accessed expression with indices and
+    components. ``to`` is the parameter that receives it, if it is an argument of a routine of the
+    project.
     """
 
     name: ast.Name
+    key: str
     use: Use
     place: ast.Expression | None = None
     to: Parameter | None = None
@@ -79,7 +81,7 @@ def _loop(context: Context, node: ast.For, found: list[Access]) -> None:
     for bound in (node.first, node.last, node.step):
         if bound is not None:
             _add(context, bound, found)
-    found.append(Access(node.counter, Use.WRITTEN))
+    found.append(Access(node.counter, node.counter.key, Use.WRITTEN))
 
 
 def _later(
@@ -88,7 +90,7 @@ def _later(
     inner: list[Access] = []
     for part in children(node):
         _add(context, part, inner)
-    found += [Access(access.name, Use.PASSED, access.place) for access in inner]
+    found += [Access(one.name, one.key, Use.PASSED, one.place) for one in inner]
 
 
 def own_parts(node: ast.Node) -> Sequence[ast.Node]:
@@ -131,7 +133,7 @@ def _add_place(context: Context, node: ast.Expression, use: Use, found: list[Acc
                     _add(context, index, found)
         node = node.base
     if type(node) is ast.Variable:
-        found.append(Access(node.name, use, whole))
+        found.append(Access(node.name, node.name.key, use, whole))
     else:
         _add(context, node, found)
 
@@ -150,7 +152,7 @@ def _call(context: Context, node: ast.Call, found: list[Access]) -> None:
             use = Use.READ if is_read else Use.PASSED
             routine = address_of(called) if known is not None else None
             to = (*routine, index) if routine else None
-            found[-1] = Access(found[-1].name, use, argument, to)
+            found[-1] = Access(found[-1].name, found[-1].key, use, argument, to)
 
 
 def address_of(called: Found | None) -> tuple[str, str] | None:

@@ -73,8 +73,8 @@ class DataFlow:
         followed = self.parameters | self.variables
         for placed in self._routine.statements if followed else ():
             for access in all_accesses(self._context, placed):
-                if access.name.key in followed:
-                    found.setdefault(access.name.key, []).append(access)
+                if access.key in followed:
+                    found.setdefault(access.key, []).append(access)
         return found
 
     def early(self, followed: frozenset[str], *, is_passed_open: bool = False) -> Iterator[Access]:
@@ -89,19 +89,25 @@ class DataFlow:
 
         def given(access: Access) -> int:
             is_open = access.use is Use.READ or (is_passed_open and access.to)
-            return 0 if is_open else bits.get(access.name.key, 0)
+            return 0 if is_open else bits.get(access.key, 0)
+
+        at_node: dict[FlowNode, int] = {}
 
         def passed(node: FlowNode, _: int, value: int) -> int:
-            for access in self.accesses_at(node):
-                value |= given(access)
-            return value
+            here = at_node.get(node)
+            if here is None:
+                here = 0
+                for access in self.accesses_at(node):
+                    here |= given(access)
+                at_node[node] = here
+            return value | here
 
         known = self.reaching(0, passed)
         reported = dict.fromkeys(Use, 0)
         for node in sorted(known, key=position):
             value = known[node]
             for access in self.accesses_at(node):
-                bit = bits.get(access.name.key, 0)
+                bit = bits.get(access.key, 0)
                 value |= given(access)
                 if bit & ~(value | reported[access.use]):
                     reported[access.use] |= bit
@@ -112,7 +118,7 @@ class DataFlow:
         changed = 0
         for access in self.accesses_at(node):
             if access.use is not Use.READ:
-                changed |= bits.get(access.name.key, 0)
+                changed |= bits.get(access.key, 0)
         return changed
 
     def reaching(
@@ -135,6 +141,16 @@ class DataFlow:
                     todo.append(after)
         return known
 
+    @cached_property
+    def _uses_at(self) -> dict[str, dict[FlowNode, list[Access]]]:
+        """Return the accesses to each parameter, by key and node."""
+        found: dict[str, dict[FlowNode, list[Access]]] = {}
+        for node in self._routine.ways.after:
+            for access in self.accesses_at(node):
+                if access.key in self.parameters:
+                    found.setdefault(access.key, {}).setdefault(node, []).append(access)
+        return found
+
     def reads(self, key: str) -> tuple[Parameter, ...] | None:
         """Return the condition for a parameter to be read before it is assigned, on every path.
 
@@ -143,9 +159,10 @@ class DataFlow:
         parameter on is no read, because the called routine may test it with VARSTATE.
         """
         met: set[Parameter] = set()
+        at_node = self._uses_at.get(key, {})
 
         def is_read(node: FlowNode, *, is_handed_on: bool) -> bool | None:
-            uses = [access for access in self.accesses_at(node) if access.name.key == key]
+            uses = at_node.get(node)
             if not uses:
                 return False
             if self._is_passed(node, key):

@@ -177,7 +177,7 @@ class _Collector:
     def _change(self, node: ast.Node) -> None:
         for access in accesses(self._context, node):
             if access.use is not Use.READ:
-                key = self._key(access.place) if access.place is not None else access.name.key
+                key = self._key(access.place) if access.place is not None else access.key
                 self._changed.add(key)
 
     def interrupt(self, node: ast.InterruptDeclaration) -> None:

@@ -42,7 +42,7 @@ def _read_too_early(context: Context, routine: RoutineBody) -> Iterator[Diagnost
     flow = data_flow(context, routine)
     reported: set[str] = set()
     for access in flow.early(flow.variables):
-        reported.add(access.name.key)
+        reported.add(access.key)
         message = f"{access.name.text} has no value yet"
         reason = "nothing before this assigns to it"
         yield context.finding("read-too-early", access.name, message, reason=reason)
@@ -80,7 +80,7 @@ def _possibly_early(
     for node in sorted(known, key=position):
         value = known[node]
         for access in flow.accesses_at(node):
-            key = access.name.key
+            key = access.key
             if access.use is not Use.READ:
                 value &= ~bits.get(key, 0)
             elif node.statement and key not in reported and bits.get(key, 0) & value:
@@ -103,7 +103,7 @@ def _on_conditions(
     for placed in routine.statements:
         has_jumps |= isinstance(placed.statement, ast.Goto)
         for access in accesses(context, placed.statement):
-            key = access.name.key
+            key = access.key
             if access.use is not Use.READ:
                 along.setdefault(placed.inside, set()).add(key)
                 if key in followed:
@@ -123,7 +123,7 @@ def _asked(context: Context, placed: PlacedStatement) -> set[str]:
     """Return the names in the condition of a block; none for other statements."""
     if type(placed.statement) not in BODIES:
         return set()
-    return {access.name.key for access in accesses(context, placed.statement)}
+    return {access.key for access in accesses(context, placed.statement)}
 
 
 def _around(placed: PlacedStatement) -> Iterator[PlacedStatement]:

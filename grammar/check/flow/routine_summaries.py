@@ -172,10 +172,10 @@ class SummaryCollector:
             for one in flow.uses[key]:
                 if one.to and one.use is Use.PASSED:
                     passed.setdefault(key, set()).add(one.to)
-        early = {access.name.key for access in flow.early(frozenset(passed))}
+        early = {access.key for access in flow.early(frozenset(passed))}
         for access in flow.early(frozenset(passed), is_passed_open=True):
             name, to = access.name, access.to
-            others = sorted(one for one in passed[name.key] if one != to)
+            others = sorted(one for one in passed[access.key] if one != to)
             lacks = tuple([(WRITES, *parameter) for parameter in others])
             region = Region.of(self._context.source, name.span)
             message = f"{name.text} has no value yet"
@@ -184,7 +184,7 @@ class SummaryCollector:
                 self._suspects.append(
                     Suspect("read-too-early", region, message, reason, ((READS, *to),), lacks)
                 )
-            elif name.key not in early:
+            elif access.key not in early:
                 names = list(dict.fromkeys(one[1] for one in others))
                 reason = f"{' and '.join(names)} give{'s' * (len(names) == 1)} it none"
                 lacks += tuple([(READS, *parameter) for parameter in others])  # reported there

@@ -34,7 +34,7 @@ def _unused(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     others: dict[str, str] = {}
     for placed in routine.statements:
         for access in all_accesses(context, placed):
-            key = access.name.key
+            key = access.key
             (written if access.use is Use.WRITTEN else used).add(key)
             if key not in table and context.found(access.name):
                 others[key] = access.name.text

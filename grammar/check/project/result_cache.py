@@ -51,7 +51,8 @@ def state_of(contents: Sequence[Content], options: CheckOptions) -> str:
 
 
 def _versions(options: CheckOptions) -> str:
-    return f"{code_digest('support', 'grammar')} {options}"
+    code = code_digest("support", "grammar") if options.kept else ""
+    return f"{code} {options}"
 
 
 def known_files(
