@@ -187,6 +187,7 @@ _STATEMENT = re.compile(
 _SHARED = re.compile(r"(?:END|ENDIF|ENDFOR|ENDWHILE|CONTINUE)\s*(?:;|\Z)", _FLAGS)
 
 _MARKUP = re.compile(r"<[?!/A-Z]", _FLAGS)
+_MARKED_LINE = re.compile(r"(?:\A|[\r\n])\s*<[?!/A-Z]", re.IGNORECASE)
 _LOOKS = (
     ("a shell script or the like", re.compile(r"#!")),
     ("Windows registry text", re.compile(r"Windows Registry Editor|REGEDIT4", _FLAGS)),
@@ -215,11 +216,14 @@ _SEPARATORS = re.compile(r"[\s,;|]+")
 
 def _why_not_krl(text: str) -> str | None:
     """Return why `text` is no KRL, or None if it is."""
+    opener = _OPENER.search(text)
+    if opener and not _MARKED_LINE.search(text, 0, opener.start()):
+        return None
     lines = [line[:_LINE_WIDTH].strip() for line in islice(_lines(text), EVIDENCE_LINES)]
     code = [line for line in lines if line and line[0] not in "&;"]
     if code and _MARKUP.match(code[0]):
         return f"no KRL statement in {_extent(lines)}: looks like XML or HTML"
-    if _OPENER.search(text):
+    if opener:
         return None
     if not code:
         if len(lines) == EVIDENCE_LINES:

@@ -8,37 +8,14 @@ A process that dies is not replaced: its tasks raise `concurrent.futures.BrokenE
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Generic, ParamSpec, Protocol, Self, TypeVar
+from concurrent.futures import Future
+from typing import TYPE_CHECKING, ParamSpec, Self, TypeVar
 
 if TYPE_CHECKING:
     from concurrent.futures import ProcessPoolExecutor
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
-_T_co = TypeVar("_T_co", covariant=True)
-
-
-class Task(Protocol[_T_co]):
-    """A call in a process, such as a `concurrent.futures.Future`."""
-
-    def done(self) -> bool:
-        """Return whether there is a result."""
-
-    def result(self) -> _T_co:
-        """Wait for the result and return it, or raise what the function raised."""
-
-
-class _Done(Generic[_T]):
-    """A call that has returned; a `Future` would do, but its import takes 8 ms."""
-
-    def __init__(self, result: _T) -> None:
-        self._result = result
-
-    def done(self) -> bool:
-        return True
-
-    def result(self) -> _T:
-        return self._result
 
 
 class StickyPool:
@@ -67,14 +44,16 @@ class StickyPool:
 
     def submit(
         self, number: int, function: Callable[_P, _T], *arguments: _P.args, **named: _P.kwargs
-    ) -> Task[_T]:
-        """Call a function in a process, after everything submitted to it before.
-
-        In this process it is called at once, and what it raises comes from here.
-        """
+    ) -> Future[_T]:
+        """Call a function in a process, after everything submitted to it before."""
         if self._pools:
             return self._pools[number].submit(function, *arguments, **named)
-        return _Done(function(*arguments, **named))
+        done: Future[_T] = Future()
+        try:
+            done.set_result(function(*arguments, **named))
+        except BaseException as error:
+            done.set_exception(error)
+        return done
 
 
 def _processes(count: int) -> list[ProcessPoolExecutor]:

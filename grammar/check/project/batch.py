@@ -12,6 +12,7 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -47,7 +48,7 @@ from support.files.result_store import ResultStore
 from support.gc_pause import gc_paused
 from support.lazy_dataclass import dataclass
 from support.parallel.progress import Progress, no_progress
-from support.parallel.sticky_pool import StickyPool, Task
+from support.parallel.sticky_pool import StickyPool
 
 __all__ = ["CheckOptions", "check_paths"]
 
@@ -201,8 +202,8 @@ class _Project:
         self.size = sum(len(content.data) for content in self.contents)
         self.state = state_of(self.contents, options)
         self._known: Mapping[int, KnownFile] = {}
-        self._whole: Task[list[KnownFile]] | None = None
-        self._parts: list[Task[dict[int, FileResult]]] = []
+        self._whole: Future[list[KnownFile]] | None = None
+        self._parts: list[Future[dict[int, FileResult]]] = []
 
     def start(self, number: int, pool: StickyPool, store: ResultStore) -> None:
         """Have the project checked; with several processes this waits until it has been read."""

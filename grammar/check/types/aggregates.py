@@ -5,6 +5,8 @@ The rules are [TYP-19, TYP-20].
 
 from __future__ import annotations
 
+from collections.abc import Set
+
 from grammar.check.analysis.type_checker import TypeChecker
 from grammar.semantics.assignability import index, initial
 from grammar.semantics.operations import component, subscript
@@ -23,6 +25,7 @@ def aggregate(checker: TypeChecker, node: ast.Aggregate, expected: Type) -> Type
         named = checker.type_of(found) if found else UNKNOWN
         structure = named if isinstance(named, Structure) else None
     names: dict[str, str] = {}
+    given: Set[str] = frozenset()
     for part in node.components:
         key = part.name.text.upper()
         if key in names and part.indices is None:
@@ -31,7 +34,8 @@ def aggregate(checker: TypeChecker, node: ast.Aggregate, expected: Type) -> Type
         if structure is not None:
             to = structure.member(part.name.text)
             if to is None:
-                _report_missing(checker, structure, part.name)
+                given = given or {one.name.key for one in node.components}
+                _report_missing(checker, structure, part.name, given)
         if to is None:
             to = UNKNOWN
         else:
@@ -44,11 +48,13 @@ def aggregate(checker: TypeChecker, node: ast.Aggregate, expected: Type) -> Type
     return UNKNOWN if node.type is not None and structure is None else made
 
 
-def _report_missing(checker: TypeChecker, structure: Structure, name: ast.Name) -> None:
+def _report_missing(
+    checker: TypeChecker, structure: Structure, name: ast.Name, given: Set[str]
+) -> None:
+    """Report a component that a structure lacks; those that are ``given`` are not meant."""
     verdict = component(structure, name.text).verdict
-    fix = checker.context.suggestions.suggest(
-        name.text, [member.name for member in structure.members]
-    )
+    known = [one.name for one in structure.members if one.name.upper() not in given]
+    fix = checker.context.suggestions.suggest(name.text, known)
     checker.reject_part(name, verdict, structure, fix)
 
 

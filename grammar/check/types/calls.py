@@ -68,7 +68,8 @@ def _check_arguments(
 ) -> None:
     given, wanted = node.arguments, symbol.parameters
     is_uncertain = _is_uncertain(symbol, scope)
-    if len(given) > len(wanted) and symbol.more is None:
+    has_more = len(given) > len(wanted) and symbol.more is None
+    if has_more:
         many = "no arguments" if not wanted else counted(len(wanted))
         message = f"{symbol.name} takes {many}, and this is one more"
         if len(given) > len(wanted) + 1:
@@ -79,7 +80,8 @@ def _check_arguments(
         _check_missing(checker, node, symbol, is_uncertain=is_uncertain)
     for place, argument in enumerate(given):
         parameter = symbol.parameter(place)
-        if argument is not None and parameter is not None:
+        # too many may be those of another routine, so their types say nothing
+        if argument is not None and parameter is not None and not has_more:
             _check(checker, symbol, parameter, scope, argument, is_uncertain=is_uncertain)
         elif argument is not None:
             checker.infer(argument)

@@ -121,17 +121,22 @@ def test_bodies_of_other_files_do_not_matter(checked: Check) -> None:
 
 
 def test_hints(finds: Find) -> None:
-    """Names that are near, or begin alike, are offered, and nothing is wrong with them."""
+    """Names that are near, or begin alike, are offered, and nothing is wrong with them.
+
+    Components that an aggregate has are not.
+    """
     text = """DEF NEG()
   DECL INT COUNT
   COUNTT = 1
   $ORI_TYPE = #CONST
   $VEL.CB = 1
+  PTP {A1 0, A2 0, A3 0, A4 0, A5 0, AA 0}
 END
 """
     found = finds({"NEG.src": text})
     hints = {one.region.line: one.fix.text for one in found if one.fix}
-    assert {3: "did you mean COUNT?", 4: "did you mean #CONSTANT?", 5: "did you mean CP?"} == hints
+    meant = {3: "COUNT", 4: "#CONSTANT", 5: "CP", 6: "A6"}
+    assert {line: f"did you mean {name}?" for line, name in meant.items()} == hints
     lines = text.splitlines(keepends=True)
     for _, at, name in (one.edits[0] for one in found if one.fix):
         line = lines[at.line - 1]

@@ -68,6 +68,7 @@ def program(*lines: str) -> str:
         ("CTL-09", "COUNT(TEXT[]) ;> KRL309-"),
         ("FCT-01", "R = SIN(I) + SQRT(2)"),
         ("FCT-01", "R = ABS(1, 2) ;> KRL301"),
+        ("FCT-01", "R = ABS(TRUE, 2) ;> KRL301"),
         ("FCT-01", "R = ROUND(2.5) ;> KRL102"),
         ("FCT-01", "R = ATAN2(1.0) ;> KRL302?"),
         ("FCT-04", 'I = STRFIND(1, TEXT[], "A", #CASE_SENS)'),
