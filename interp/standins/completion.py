@@ -110,14 +110,17 @@ class _Wanted:
             Space.ROUTINE: self.routines,
             Space.TYPE: self.types,
         }
-        is_wanting = False
+        is_wanting = bool(resolution.unknown_members)
         for use in resolution.open_uses:
             wanted = names.get(use.space) if use.space is not None else None
             if wanted is not None:
                 wanted.setdefault(use.name.key, (module, use.name))
                 is_wanting = True
         for name, answer in resolution.answers.items():
-            if not isinstance(answer, Found) or not isinstance(answer.scope, SystemScope):
+            if not isinstance(answer, Found):
+                continue
+            if not isinstance(answer.scope, SystemScope):
+                is_wanting = is_wanting or _is_of_unknown_type(project, answer)
                 continue
             if _is_of_config(answer):
                 known = name.key in load_library().data
@@ -153,6 +156,11 @@ def _scalars(syntax: ast.Module) -> set[str]:
         ):
             found.add(node.target.name.key)
     return found
+
+
+def _is_of_unknown_type(project: Project, found: Found) -> bool:
+    """Return whether this is of a type that has a name and no declaration."""
+    return found.symbol.type is not None and project.types.of(found) == UNKNOWN
 
 
 def _is_of_config(found: Found) -> bool:

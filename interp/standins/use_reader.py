@@ -98,15 +98,24 @@ class _Reader:
         use = self._use(node.target)
         if use is not None:
             use.is_assigned = True
-            self._parts(use, node.value)
+        self._parts(use, node.value)
 
-    def _parts(self, use: DataUse, value: ast.Expression) -> None:
+    def _declaration(self, node: ast.VariableDeclaration) -> None:
+        use = self._uses.types.get(node.type.key)
+        for one in node.declarators:
+            if one.value is not None:
+                if use is not None:
+                    use.record(self._type(one.value))
+                self._parts(use, one.value)
+
+    def _parts(self, use: DataUse | None, value: ast.Expression) -> None:
         """The parts of a structure that is written out."""
         if isinstance(value, ast.Aggregate):
             for part in value.components:
-                inner = use.member(part.name)
+                inner = self._member(use, part.name)
                 type_ = self._type(part.value)
-                inner.types += [type_] if isinstance(type_, Scalar) else ()
+                if inner is not None and isinstance(type_, Scalar | Constant | Text):
+                    inner.record(type_)
                 self._parts(inner, part.value)
 
     def _condition(self, node: ast.If | ast.InterruptDeclaration) -> None:
@@ -289,9 +298,17 @@ class _Reader:
             if name.key in self._uses.data and self._is_apart(module, name.key):
                 return self._uses.apart.setdefault((module.path, name.key), DataUse())
             return self._uses.data.get(name.key)
+        return self._of_type(name)
+
+    def _of_type(self, name: ast.Name) -> DataUse | None:
+        """Return the use of the undeclared type of a declared variable, component or function."""
         found = self._checked.resolution.found(name)
         written = None if found is None else found.symbol.type
         return None if written is None else self._uses.types.get(written.key)
+
+    def _member(self, use: DataUse | None, name: ast.Name) -> DataUse | None:
+        """Return the use of a component, or of the undeclared type of a declared one."""
+        return self._of_type(name) if use is None else use.member(name)
 
     def _use(self, node: ast.Expression) -> DataUse | None:
         """Return the use of the undeclared name, or part of one, in an expression."""
@@ -306,8 +323,7 @@ class _Reader:
                 use = self._uses.routines.get(name.key)
                 return None if use is None else use.result
             case ast.Member(base=base, name=name):
-                use_of_base = self._use(base)
-                return None if use_of_base is None else use_of_base.member(name)
+                return self._member(self._use(base), name)
             case ast.Subscript(base=base, indices=indices):
                 array = self._use(base)
                 if array is not None:
@@ -414,6 +430,7 @@ _RULES: Mapping[type[ast.Node], Callable[[_Reader, Any], object]] = {
     ast.Switch: _Reader._switch,
     ast.Trigger: _Reader._trigger,
     ast.Unary: _Reader._unary,
+    ast.VariableDeclaration: _Reader._declaration,
     ast.WaitFor: _Reader._wait,
     ast.WaitSeconds: _Reader._pause,
     ast.While: _Reader._loop,

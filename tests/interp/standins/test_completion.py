@@ -366,6 +366,31 @@ def test_members_of_a_lost_type_have_the_types_of_all_its_variables() -> None:
     assert {} == _run(program).controller.skipped
 
 
+@pytest.mark.parametrize(
+    ("data", "body", "declared"),
+    [
+        ("DECL LIMITS R\n", "R.TOP=7.5\n", "STRUC LIMITS REAL TOP"),
+        ("DECL LIMITS R={LOW 1.5,IS_ON TRUE}\n", "", "STRUC LIMITS REAL LOW,BOOL IS_ON"),
+        ("DECL LIMITS R={SORT #DOOR}\n", "R.SORT=#LEAF\n", "ENUM LIMITS_SORT_E LEAF,DOOR"),
+        ("DECL MODE M=#AUTO\n", "M=#MANUAL\n", "ENUM MODE MANUAL,AUTO"),
+        ("STRUC WHOLE LIMITS R\nDECL WHOLE W\n", "W.R.TOP=7.5\n", "STRUC LIMITS REAL TOP"),
+        ("STRUC WHOLE LIMITS R[2]\nDECL WHOLE W\n", "W.R[2].N=2\n", "STRUC LIMITS INT N"),
+        ("STRUC WHOLE LIMITS R\nDECL WHOLE W={R {N 1}}\n", "", "STRUC LIMITS INT N"),
+        ("STRUC WHOLE MODE M\nDECL WHOLE W={M #AUTO}\n", "", "ENUM MODE AUTO"),
+    ],
+)
+def test_lost_type_of_a_declared_variable(data: str, body: str, declared: str) -> None:
+    """A type that no file has is known from components and values of declared variables."""
+    program = _program(
+        {
+            "main.src": f"DEF main ( )\n{body}END\n",
+            "main.dat": f"DEFDAT MAIN\n{data}ENDDAT\n",
+        }
+    )
+    assert f"GLOBAL {declared}" in _data_list(program).split("\n")
+    assert {} == _run(program).controller.skipped
+
+
 def _of(lines: list[str], start: str) -> str:
     """The rest of the line that begins so."""
     return next(line for line in lines if line.startswith(start)).removeprefix(start)
