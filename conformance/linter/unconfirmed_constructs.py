@@ -44,7 +44,17 @@ _SPACES: Final = {"PTP": "older", "LIN": "older", "CIRC": "older", "SPTP": "axes
 
 #: Clauses that allow a form: where they are wrong, a controller does not take the program at all.
 _FORMS: Final = frozenset(
-    {"CTL-09.b", "INT-06.c", "SCO-07.b", "SCO-13.d", "SPL-10", "TRG-10.e", "TYP-04.b", "TYP-08.e"}
+    {
+        "CTL-09.b",
+        "INT-06.c",
+        "SCO-07.b",
+        "SCO-13.d",
+        "SPL-10",
+        "TRG-10.e",
+        "TRG-13.b",
+        "TYP-04.b",
+        "TYP-08.e",
+    }
 )
 
 

@@ -140,6 +140,8 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
                 ("SLIN {X 1} C_SPL ;> apex\n  WAIT SEC 0\n  SPTP {A1 1}", ""),
                 (f"{_TRIGGER}\n  SLIN {{X 1}} ;> runs 1", "good.src:5: only TRG-10.e allows it"),
                 (f"{_TRIGGER}\n  LIN {{X 1}} ;> runs 1", ""),
+                ("TRIGGER WHEN PATH=0 DELAY=0 DO good() PRIO=N ;> trigger", "only TRG-13.b allows"),
+                ("TRIGGER WHEN PATH=0 DELAY=0 DO good() PRIO=-1 ;> trigger", ""),
                 ("LIN {X 1} C_DIS\n  LIN_REL {X 1} ;> pose 1 2 3", "good.src:6: only MOT-14.b"),
                 ("LIN {X 1} C_DIS\n  LIN_REL {X 1}\n  LIN {Y 1} ;> pose 1 2 3", "only MOT-14.b"),
                 ("LIN {X 1} C_DIS\n  LIN_REL {X 1}\n  LIN {X 1, Y 2, Z 3} ;> pose 1 2 3", ""),
