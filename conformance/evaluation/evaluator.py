@@ -29,6 +29,7 @@ from conformance.evaluation.place_laws import (
     blend_violations,
     missing_blends,
     trigger_violations,
+    wrong_blend_reports,
 )
 from conformance.evaluation.run_laws import run_violations
 from conformance.evaluation.spline_laws import spline_violations
@@ -109,6 +110,7 @@ def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
         motion_violations(seen, motions),
         blend_violations(free),
         missing_blends(free),
+        wrong_blend_reports(seen, motions),
         blend_speed_violations(free),
         spline_violations(free),
     ]

@@ -31,6 +31,8 @@ _NEAR_MM, _NEAR_DEGREES = 0.01, 0.002
 _NEAR_TIME: Final = 2
 #: The largest fraction of a motion that a blend may use.
 _HALF: Final = 0.5
+#: The messages of a motion that is not approximated [ADV-12].
+_NOT_APPROXIMATED: Final = (1123, 1442)
 
 
 @dataclass(frozen=True)
@@ -91,10 +93,9 @@ def missing_blends(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
     """
     for one, other in pairwise(motions):
         own, next_own = (each.motion.settings.approximation for each in (one, other))
-        sizes = {"C_PTP": own.cptp, "C_VEL": own.cvel, "C_ORI": own.cori}
         if not one.motion.criteria or not one.stops or not follows(one, other):
             continue
-        zones = [sizes.get(criterion, own.cdis) for criterion in one.motion.criteria]
+        zones = _zones(one)
         if other.motion.kind.endswith("PTP"):
             zones.append(next_own.cptp)
         elif one.motion.kind.endswith("PTP"):
@@ -103,6 +104,37 @@ def missing_blends(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
         if min(zones) > 0.0 and is_in_time:
             law = "a motion is approximated where the next is planned before it begins"
             yield one.broken(law, "it stops")
+
+
+def wrong_blend_reports(seen: Observation, motions: Sequence[EndedMotion]) -> Iterator[Violation]:
+    """Yield a blend that failed without a message, and a message where none was wanted [ADV-12].
+
+    ``motions`` are those of the run that came to their end.
+    """
+    told = {
+        (one.file, one.line): one
+        for one in seen.of_kind("message")
+        if one.fields.get("number") in _NOT_APPROXIMATED
+    }
+    law = "a motion is reported not to be approximated where it should have been"
+    for one in motions:
+        message = told.get((one.event.file, one.event.line))
+        if message is not None and not one.motion.criteria:
+            yield Violation(message, law, "it should not have been", "ADV-12")
+        elif message is None and one.stops and _has_zone(one):
+            yield one.broken(law, "it is not reported", "ADV-12")
+
+
+def _has_zone(one: EndedMotion) -> bool:
+    """Return whether a motion has an approximation criterion, and each is larger than zero."""
+    return bool(one.motion.criteria) and min(_zones(one)) > 0.0
+
+
+def _zones(one: EndedMotion) -> list[float]:
+    """Return the sizes of the criteria of a motion, in the unit of each."""
+    own = one.motion.settings.approximation
+    sizes = {"C_PTP": own.cptp, "C_VEL": own.cvel, "C_ORI": own.cori}
+    return [sizes.get(criterion, own.cdis) for criterion in one.motion.criteria]
 
 
 def _excess(

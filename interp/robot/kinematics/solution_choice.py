@@ -201,9 +201,11 @@ def _choose(
         if fitting:
             break
     else:
-        named = zip(axes, solutions[0].tolist(), strict=True)
+        named = zip(axes, solutions[0].tolist(), origin, strict=True)
         raise next(
-            _limit_fault(axis, value) for axis, value in named if not _full_turns(axis, value, 0.0)
+            _limit_fault(axis, value)
+            for axis, value, before in named
+            if not _full_turns(axis, value, before)
         )
     found = min(fitting, key=lambda fit: _effort(limited, fit, origin))
     return Solution(found, int(arm.status(found)), turn_of(found), singularities(arm, found))

@@ -16,6 +16,8 @@ from functools import cached_property, lru_cache
 from typing import Protocol
 
 import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.polynomial.polynomial import polyval
 
 from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.arc_length import ArcLength
@@ -79,9 +81,8 @@ class Rounding:
 
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.at`."""
-        v = self._inner(u)
-        one, other = _side(1.0 - v, self.slope)[0], _side(v, self.slope)[0]
-        return 1.0 - self.before * one, self.after * other
+        left, joined = _side_rates(self._inner(u), self.slope, 0)
+        return 1.0 - self.before * left, self.after * joined
 
     def rates(self, u: Array) -> tuple[Array, Array]:
         """See `Transition.rates`."""
@@ -89,26 +90,18 @@ class Rounding:
 
     def rates_at(self, u: Array) -> tuple[Array, Array]:
         """Compute `rates` without the cache."""
-        v = self._inner(u)
-        _, *left = _side(1.0 - v, self.slope)
-        _, *right = _side(v, self.slope)
-        signs = (1.0, -1.0, 1.0)
-        one = [self.before * s * side for s, side in zip(signs, left, strict=True)]
-        other = [self.after * side for side in right]
-        (a, b), c = self._shares, self.cosine
-        (x1, x2, x3), (y1, y2, y3) = (
-            [a * s * x for s, x in zip(signs, left, strict=True)],
-            [b * y for y in right],
-        )
-        square = x1 * x1 + y1 * y1 + 2.0 * c * x1 * y1
-        half = x1 * x2 + y1 * y2 + c * (x2 * y1 + x1 * y2)  # of its first derivative
-        bend = x2 * x2 + x1 * x3 + y2 * y2 + y1 * y3 + c * (x3 * y1 + 2.0 * x2 * y2 + x1 * y3)
+        rates = _side_rates(self._inner(u), self.slope, slice(1, None))
+        first, second, third = _directed(rates, self._shares, self.cosine)
+        square = (first * first).sum(axis=1)
+        half = (first * second).sum(axis=1)  # of its first derivative
+        bend = (second * second + first * third).sum(axis=1)
         root = np.sqrt(square)
         w1, w2, w3 = (
             w / self.way.length for w in (root, half / root, bend / root - half**2 / root**3)
         )
         inner = (1.0 / w1, -w2 / w1**3, (3.0 * w2 * w2 - w1 * w3) / w1**5)
-        return np.stack(chained(one, inner)), np.stack(chained(other, inner))
+        one, other = (np.stack(chained(rates[:, side], inner)) for side in (0, 1))
+        return -self.before * one, self.after * other
 
     @property
     def _shares(self) -> tuple[float, float]:
@@ -213,20 +206,32 @@ def chained(
     return (f1 * x1, f2 * x1**2 + f1 * x2, f3 * x1**3 + 3.0 * f2 * x1 * x2 + f1 * x3)
 
 
-def _side_rate(v: Array, slope: float) -> Array:
-    """Return the first derivative of one side of a rounding."""
-    return v * v * (3.0 * (4.0 - slope) + 4.0 * (slope - 3.0) * v)
+@lru_cache(maxsize=16)
+def _sides(slope: float) -> Array:
+    """Return coefficients in v of what is left of one side, and of what was travelled of the other.
+
+    They are ``(5, 4, 2)``: by power, derivative and side.
+    """
+    joined = Polynomial((0.0, 0.0, 0.0, 4.0 - slope, slope - 3.0))
+    sides = joined(Polynomial((1.0, -1.0))), joined
+    return np.array(
+        [[np.pad(side.deriv(order).coef, (0, order)) for side in sides] for order in range(4)]
+    ).transpose(2, 0, 1)
 
 
-def _side(v: Array, slope: float) -> tuple[Array, Array, Array, Array]:
-    """Return the polynomial of one side of a rounding, and its derivatives."""
-    c, d = 4.0 - slope, slope - 3.0
-    return (
-        v**3 * (c + d * v),
-        _side_rate(v, slope),
-        v * (6.0 * c + 12.0 * d * v),
-        6.0 * c + 24.0 * d * v,
-    )
+def _side_rates(v: Array, slope: float, orders: int | slice) -> Array:
+    """Return derivatives of both sides by v, ``(orders, 2, n)``."""
+    return np.asarray(polyval(v, _sides(slope)[:, orders]), dtype=np.float64)
+
+
+def _directed(rates: Array, shares: tuple[float, float], cosine: float) -> Array:
+    """Return derivatives of a place ``(..., n, 2)`` from those of both sides ``(..., 2, n)``.
+
+    Lengths are in sums of both sides.
+    """
+    left, joined = (share * rates[..., side, :] for side, share in enumerate(shares))
+    sine = math.sqrt(1.0 - cosine * cosine)
+    return np.stack((cosine * joined - left, sine * joined), axis=-1)
 
 
 @lru_cache(maxsize=16)  # checks of a blend sample the same few transitions repeatedly
@@ -241,13 +246,7 @@ def _rates(transition: Rounding | Overlap, parameters: bytes) -> tuple[Array, Ar
 @lru_cache(maxsize=16)  # a corner tries zones of several sizes that have one shape
 def _way(shares: tuple[float, float], slope: float, cosine: float) -> ArcLength:
     """Return the length along a rounding as a function of v, in sums of both sides."""
-    a, b = shares
-
-    def tangents(v: Array) -> Array:
-        one, other = a * _side_rate(1.0 - v, slope), b * _side_rate(v, slope)
-        return np.stack((one + cosine * other, math.sqrt(1.0 - cosine * cosine) * other), axis=1)
-
-    return ArcLength(tangents)
+    return ArcLength(lambda v: _directed(_side_rates(v, slope, 1), shares, cosine))
 
 
 @lru_cache(maxsize=16)  # values and derivatives are computed at the same parameters

@@ -7,11 +7,14 @@ for each number of points; a spline then costs one matrix product.
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from interp.robot.kinematics.kinematics import Array
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 _MAPPED = 129
 """The number of points above which the matrix would need too much memory."""
@@ -21,47 +24,38 @@ class UniformSpline:
     """A cubic spline on [0, 1] through points ``(n, columns)``, with its derivatives."""
 
     def __init__(self, points: Array) -> None:
-        self._count = len(points) - 1
-        if len(points) <= _MAPPED:
-            mapped = _map(len(points)) @ points
-            self._coefficients = mapped.reshape(4, self._count, points.shape[1])
-        else:
-            from scipy.interpolate import CubicSpline
+        from scipy.interpolate import CubicSpline, PPoly
 
-            spline = CubicSpline(np.linspace(0.0, 1.0, len(points)), points)
-            self._coefficients = np.ascontiguousarray(spline.c)
+        grid = np.linspace(0.0, 1.0, len(points))
+        if len(points) <= _MAPPED:
+            cubics = (_map(len(points)) @ points).reshape(4, -1, points.shape[1])
+            self._values = PPoly.construct_fast(cubics, grid)
+        else:
+            self._values = CubicSpline(grid, points)
 
     def at(self, u: Array) -> Array:
         """Return values ``(n, columns)``."""
-        (c3, c2, c1, c0), dt, _ = self._local(u)
-        values: Array = c0 + dt * (c1 + dt * (c2 + dt * c3))
+        values: Array = self._values(u)
         return values
 
     def rates(self, u: Array) -> tuple[Array, Array, Array]:
         """Return first to third derivatives; the third is interpolated linearly between points."""
-        (c3, c2, c1, _), dt, place = self._local(u)
-        share = dt * self._count
-        third = self._thirds[place] * (1.0 - share) + self._thirds[place + 1] * share
-        return c1 + dt * (2.0 * c2 + dt * 3.0 * c3), 2.0 * c2 + dt * 6.0 * c3, third
+        return self._values(u, 1), self._values(u, 2), self._thirds(u)
 
     @cached_property
-    def _thirds(self) -> Array:
-        """The third derivatives at the points, from those of the cubics on either side.
+    def _thirds(self) -> PPoly:
+        """The third derivative, from those of the cubics on either side of each point.
 
         The not-a-knot condition makes the two cubics at each end one, whose third derivative is
         that at the point between them.
         """
-        between = 6.0 * self._coefficients[0]
-        thirds = np.empty((self._count + 1, between.shape[1]))
-        thirds[1:-1] = (between[:-1] + between[1:]) / 2.0
-        thirds[0] = between[1] - (between[2] - between[1]) / 1.5
-        thirds[-1] = between[-2] - (between[-3] - between[-2]) / 1.5
-        return thirds
+        from scipy.interpolate import PPoly
 
-    def _local(self, u: Array) -> tuple[Array, Array, npt.NDArray[np.intp]]:
-        """Return for each parameter its coefficients, and the distance and index of its point."""
-        place = np.minimum((u * self._count).astype(np.intp), self._count - 1)
-        return self._coefficients[:, place], (u - place / self._count)[:, None], place
+        between = 6.0 * self._values.c[0]
+        ends = between[[1, -2]] - (between[[2, -3]] - between[[1, -2]]) / 1.5
+        thirds = np.concatenate((ends[:1], (between[:-1] + between[1:]) / 2.0, ends[1:]))
+        slopes = np.diff(thirds, axis=0) * len(between)
+        return PPoly.construct_fast(np.stack((slopes, thirds[:-1])), self._values.x)
 
 
 @lru_cache(maxsize=8)

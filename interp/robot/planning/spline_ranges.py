@@ -106,8 +106,7 @@ def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
     edges = []
     for number in inside:
         length = _length(pieces[number])
-        places = np.clip((np.array([start, end]) - ends[number]) / length, 0.0, 1.0)
-        low, high = places.tolist()
+        low, high = np.minimum((np.array([start, end]) - ends[number]) / length, 1.0).tolist()
         edges.append(((number, low), (number, high)))
         whole = pieces[number].limits
         within = []

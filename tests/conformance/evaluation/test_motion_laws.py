@@ -14,11 +14,12 @@ from conformance.evaluation.duration_laws import duration_violations, seconds_of
 from conformance.evaluation.execution import Setup, observe
 from conformance.evaluation.motion_laws import blend_speed_violations, motion_violations
 from conformance.evaluation.motions import ended, flanges_of
-from conformance.evaluation.observation import Observation
+from conformance.evaluation.observation import Event, Observation
 from conformance.evaluation.place_laws import (
     blend_violations,
     missing_blends,
     trigger_violations,
+    wrong_blend_reports,
 )
 from conformance.evaluation.spline_laws import spline_violations
 from conformance.suite.case import Case, read_case
@@ -131,6 +132,7 @@ def broken(run: Observation) -> list[tuple[str, int]]:
         *motion_violations(run, motions),
         *blend_violations(motions),
         *missing_blends(motions),
+        *wrong_blend_reports(run, motions),
         *blend_speed_violations(motions),
         *spline_violations(motions),
         *duration_violations(motions),
@@ -266,6 +268,18 @@ def test_a_blend_that_is_planned_in_time_takes_place(
     near = replace(settings, approximation=Approximation(cdis=size))
     run = with_motion(line, criteria=("C_DIS",), settings=near)
     assert is_missing == any(missing_blends(tuple(ended(run))))
+    assert is_missing == any(wrong_blend_reports(run, tuple(ended(run))))
+
+
+@pytest.mark.parametrize(
+    ("line", "number", "is_wrong"),
+    [(8, 1123, True), (8, 1442, True), (8, 1447, False), (13, 1123, False)],
+)
+def test_only_a_blend_is_reported_to_fail(line: int, number: int, is_wrong: bool) -> None:
+    """A motion without criterion ends exactly as it should."""
+    told = Event(0, "robot", "message", "a.src", line, {"number": number})
+    run = replace(seen(), events=(*seen().events, told))
+    assert is_wrong == any(wrong_blend_reports(run, tuple(ended(run))))
 
 
 @pytest.mark.parametrize(
