@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections import defaultdict, deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
-from typing import Final
+from typing import Any, Final
 
 from grammar.semantics.types import CHAR, REAL, Array
 from interp.controller.state.clock import Clock, microseconds
@@ -90,25 +90,25 @@ class Channels:
         return {1: state_value("CMD_OK")}
 
     def write(self, arguments: Arguments) -> Changes:
-        """CWRITE: send formatted values; a format without values is sent as it is."""
+        """CWRITE: send formatted values; a format without values is sent as it is.
+
+        RET1 is not what it is for SWRITE [FCT-08].
+        """
         match arguments:
             case (handle, _, _, pattern, *more):
                 name = self._name(handle)
             case _:
                 raise fault("argument")
-        target = empty(Array(CHAR, (LONGEST,)))
-        assert isinstance(target, ArrayValue)
-        pattern, values = known(pattern), [known(one) for one in more]
-        if not values:
-            text = text_of(pattern)
-            state: Value = state_value("CMD_OK", length=len(text))
-        else:
-            _, changes = swrite(target, None, 0, pattern, *values)
-            state = changes[1]
-            text = text_of(changes.get(0, target))
+        text, values = text_of(known(pattern)), [known(one) for one in more]
+        is_written, hits = True, 0
+        if values:
+            _, changes = swrite(empty(Array(CHAR, (LONGEST,))), None, 0, text, *values)
+            state: Any = changes[1]
+            is_written, hits = state.get("RET1").name == "CMD_OK", state.get("HITS")
+            text = text_of(changes[0])
         for listener in self.listeners:
             listener(name, text)
-        return {1: state}
+        return {1: state_value("DATA_OK" if is_written else "CMD_ABORT", hits, len(text))}
 
     def read(self, arguments: Arguments, since: int) -> Changes | Waiting:
         """CREAD, requested at the time ``since``; return `Waiting` if there is no data yet."""
