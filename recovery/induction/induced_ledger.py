@@ -92,7 +92,8 @@ def without(
     """
     wanted = set(struck)
     if unknown := sorted(wanted - {construct.id for construct in constructs}):
-        raise LedgerError(f"there is no construct {', '.join(unknown)}")
+        known = f"; the first is {constructs[0].id}" if constructs else ""
+        raise LedgerError(f"there is no construct {', '.join(unknown)}{known}")
     left: list[Construct] = []
     gone: list[Construct] = []
     whole = grammar = start

@@ -280,4 +280,4 @@ def test_negatives_are_the_same_when_a_run_goes_on(
 def test_an_unknown_step(out: Path, corpus: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A step that there is not is named."""
     assert auto(corpus, "--out", out, "--strike", "9999-nothing") == 2
-    assert "9999-nothing" in capsys.readouterr().err
+    assert "no construct 9999-nothing; the first is 0001-" in capsys.readouterr().err

@@ -304,6 +304,13 @@ def test_first_motion_is_a_line(run: Run) -> None:
     assert "(message 1443)" in run(body, "--strict")[1]
 
 
+@pytest.mark.parametrize("first", ["PTP {A1 10}", "PTP_REL {A1 10}"])
+def test_first_motion_is_not_complete(run: Run, first: str) -> None:
+    """A motion that says only in part where the arm goes is executed from where it is."""
+    said = "main.src:2: the first motion is not allowed as such: executed from where the arm is"
+    assert f"robot program: {said}" == run(f"{first}\n")[2].splitlines()[-1]
+
+
 def test_no_time(run: Run) -> None:
     """A run of no time ends at once."""
     _, out, _ = run("WAIT SEC 1\n", "--until", "0")

@@ -42,6 +42,8 @@ from interp.values.values import StructureValue, known
 _LOADS: Final = ("$LOAD", "$LOAD_A1", "$LOAD_A2", "$LOAD_A3")
 #: The motion that brings the arm to the end of a line with which a program begins.
 _BROUGHT: Final = {"LIN": "PTP", "SLIN": "SPTP"}
+#: How a first motion that is not replaced is executed.
+_FROM_HERE: Final = "from where the arm is"
 #: The motion that replaces one that cannot be planned.
 _REPLACED: Final = {**_BROUGHT, "CIRC": "PTP", "SCIRC": "SPTP"}
 
@@ -148,9 +150,10 @@ class MotionBuilder:
         target = target_of(request.target)
         criteria = request.criteria
         if self._is_first and (suffix or kind not in AXIS_MOTIONS or not is_complete(target)):
-            if not suffix and kind in _BROUGHT:
+            is_brought = not suffix and kind in _BROUGHT
+            if is_brought:
                 kind, criteria = _BROUGHT[kind], ()
-            self._refuse_start(request.at, kind)
+            self._refuse_start(request.at, f"as {kind}" if is_brought else _FROM_HERE)
         snapshot = self._variables.snapshot(request.values)
         self._check_frames(snapshot, kind, target)
         settings = self._settings(snapshot)
@@ -180,7 +183,7 @@ class MotionBuilder:
     def block(self, request: MoveSpline, triggers: Sequence[SetTrigger]) -> PlannedMotion:
         """Build the motion of a spline block. Raises `Fault`."""
         if self._is_first and not _begins_completely(request):
-            self._refuse_start(request.at, request.keyword)
+            self._refuse_start(request.at, _FROM_HERE)
         snapshot = self._variables.snapshot(request.values)
         set_triggers: dict[int, SetTrigger] = {}
         set_stops: dict[int, SplineStop] = {}
@@ -220,16 +223,16 @@ class MotionBuilder:
         """Whether this is the first motion, in a program that is complete."""
         return self._number == 0 and not self._state.profile.is_tolerant
 
-    def _refuse_start(self, at: At, kind: str) -> None:
+    def _refuse_start(self, at: At, how: str) -> None:
         """Reject a motion with which no program may begin [MOT-10].
 
         If the profile brings the arm to the first point, post a message instead; the motion is then
-        executed as ``kind``.
+        executed as ``how`` says.
         """
         error = message_fault(1443)
         if not self._state.profile.brings_arm:
             raise error
-        self._state.messages.post("robot", at, 1443, f"{error}: executed as {kind}")
+        self._state.messages.post("robot", at, 1443, f"{error}: executed {how}")
 
     def back_to(self, at: At, axes: Sequence[float]) -> PlannedMotion:
         """Build the motion back to where an interrupt routine has stopped the arm."""
