@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Iterator
 from functools import cache, cached_property
 
 from grammar.check.analysis.context import Context
@@ -25,6 +26,8 @@ _BAS = Typos(("BAS",), 2, series=Series.NONE)
 _FOR_BAS = re.compile(
     r"[ \t]*\([ \t]*#(?:INITMOV|[A-Z]+_PARAMS|(?:VEL|ACC)_[A-Z]+|BASE|TOOL)\b", re.IGNORECASE
 )
+# Names with fewer letters are near to anything.
+_SHORT = 3
 
 
 class LikelyNames:
@@ -73,15 +76,25 @@ class LikelyNames:
         for known in (own, everywhere):
             if meant := known.meant(name, has_slipped=has_slipped, has_plurals=has_plurals):
                 return meant
-        return ()
+        letters = set(name.upper())
+        near = self._short.meant(name, has_plurals=False) if space is Space.VALUE else ()
+        return tuple(one for one in near if set(one.upper()) == letters)
 
     def _own_typos(self, space: Space) -> Typos:
         """Return the names of the file, of its routines and of its data list."""
         if space not in self._own:
-            tables = (*self._context.tables, *filter(None, [self._context.own_data]))
-            names = (name for table in tables for name in table.names(space))
-            self._own[space] = Typos(names, series=Series.DIGITS)
+            self._own[space] = Typos(self._names(space), series=Series.DIGITS)
         return self._own[space]
+
+    def _names(self, space: Space) -> Iterator[str]:
+        tables = (*self._context.tables, *filter(None, [self._context.own_data]))
+        return (name for table in tables for name in table.names(space))
+
+    @cached_property
+    def _short(self) -> Typos:
+        """The variables of three letters, of which only a name of the same letters is a slip."""
+        names = (name for name in self._names(Space.VALUE) if len(name) == _SHORT)
+        return Typos(names, _SHORT, series=Series.DIGITS)
 
     @cached_property
     def _prefixes(self) -> frozenset[str]:

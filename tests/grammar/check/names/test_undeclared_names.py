@@ -653,3 +653,16 @@ def test_a_type_that_is_not_at_hand_may_have_a_constant() -> None:
         ("OWN", [("main.dat", 2, "KSS2296")]),
     ):
         assert expected == found_in({"main.src": main, "main.dat": data.format(type_)})
+
+
+@pytest.mark.parametrize(("name", "mark"), [("rte", "101?"), ("rett", "101?"), ("rat", "701-")])
+def test_a_short_variable_is_known_by_its_letters(agrees: Agrees, name: str, mark: str) -> None:
+    """One with other letters may be another variable, whose file is missing."""
+    cell = f"""DEF CELL()
+  INT RET
+  RET = 1
+  IF RET == 1 THEN
+    {name} = 2 ;> KRL{mark}
+  ENDIF
+END"""
+    agrees({"R1/cell.src": cell, "R1/cell.dat": DATA}, is_complete=None)
