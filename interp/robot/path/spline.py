@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 _BEND = 1e-6  # norm of the difference of two unit tangents below which they are equal
 _SHORT = 1e-3  # mm of path below which the tool hardly does more than turn
 _SAMPLES = 129
+_ENDS = 0.0, 1.0  # of the parameter of a segment
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,13 +107,14 @@ class FreeSegment:
     """
 
     def __init__(self, ends: Array, span: float, orientation: Orientation) -> None:
-        self._coefficients = _quintic(ends, span)
+        from scipy.interpolate import BPoly, CubicSpline
+
+        self._curve = BPoly.from_derivatives(_ENDS, ends * span ** np.arange(3.0)[:, None])
+        self._slopes = self._curve.derivative()
         self._orientation = orientation
         self.way = ArcLength(self._slopes)
         self.length = self.way.length
         grid = np.linspace(0.0, 1.0, _SAMPLES)
-        from scipy.interpolate import CubicSpline
-
         self._parameter = CubicSpline(self.way.at(grid) / self.length, grid)
 
     @property
@@ -128,23 +130,13 @@ class FreeSegment:
 
     def at(self, u: Array) -> tuple[Array, Array]:
         """See `interp.robot.path.pose_path.PosePath.at`."""
-        powers = self._own(u)[:, None] ** np.arange(6)
-        return powers @ self._coefficients, self._orientation.at(u)
+        return self._curve(self._parameter(u)), self._orientation.at(u)
 
     def tangents(self, u: Array) -> Array:
         """See `interp.robot.path.pose_path.PosePath.tangents`."""
-        slopes = self._slopes(self._own(u))
+        slopes = self._slopes(self._parameter(u))
         tangents: Array = slopes / np.linalg.norm(slopes, axis=1)[:, None] * self.length
         return tangents
-
-    def _own(self, u: Array) -> Array:
-        own: Array = self._parameter(u)
-        return own
-
-    def _slopes(self, own: Array) -> Array:
-        powers = own[:, None] ** np.arange(5) * np.arange(1, 6)
-        slopes: Array = powers @ self._coefficients[1:]
-        return slopes
 
 
 def chains_of(segments: Sequence[Segment]) -> list[list[Segment]]:
@@ -224,24 +216,6 @@ def _run(
     if following:
         ends[-1, 2] = following.curvature(0.0)
     return ends, spans
-
-
-def _quintic(ends: Array, span: float) -> Array:
-    """Return coefficients ``(6, 3)``, lowest power first, for a parameter from 0 to 1."""
-    (p0, v0, a0), (p1, v1, a1) = ends * np.array([1.0, span, span * span])[:, None]
-    rest = p1 - p0 - v0 - a0 / 2.0
-    slope = v1 - v0 - a0
-    bend = a1 - a0
-    return np.stack(
-        (
-            p0,
-            v0,
-            a0 / 2.0,
-            10.0 * rest - 4.0 * slope + bend / 2.0,
-            -15.0 * rest + 7.0 * slope - bend,
-            6.0 * rest - 3.0 * slope + bend / 2.0,
-        )
-    )
 
 
 def _orientations(

@@ -15,6 +15,7 @@ from interp.robot.arm import ArmEvent, EventKind, Place
 from interp.robot.path.tool_path import tool_way
 from interp.robot.planning.blend_zones import wants_blend
 from interp.robot.planning.plan import Passage, places_of
+from interp.robot.planning.ramps import bisected
 from interp.robot.planning.timeline import APEX, MICROSECOND, Key, Section, Timeline, micros
 
 _ORDER: tuple[EventKind, ...] = (
@@ -22,7 +23,6 @@ _ORDER: tuple[EventKind, ...] = (
     *("place", "motion_end"),
 )
 """What comes first of events of a motion at one time."""
-_HALVINGS = 30
 _ROUNDING = 1e-9  # of u
 _NEAR = 1e-4
 """How far in u a stop may end after its place and still be in time: a plan is exact to 1 µs."""
@@ -141,14 +141,12 @@ class _Clock:
         first = stop_from(low)
         if high <= low or (first is not None and first > (section.key, u + _NEAR)):
             return low, True
-        for _ in range(_HALVINGS):
-            middle = (low + high) / 2.0
-            stop = stop_from(middle)
-            if stop is None or stop < (section.key, u):
-                low = middle
-            else:
-                high = middle
-        return high, False
+
+        def is_behind(time: float) -> bool:
+            stop = stop_from(time)
+            return stop is not None and stop >= (section.key, u)
+
+        return bisected(is_behind, high, low), False
 
     def _on_path(self, place: Place, part: int | None) -> tuple[Section, float]:
         """Return section and parameter of a place in mm from end or start [TRG-04, TRG-11].

@@ -69,7 +69,7 @@ def speed_after(speed: float, acceleration: float, final: float, jerk: float) ->
 
 
 def bisected(fits: Callable[[float], bool], within: float, beyond: float) -> float:
-    """Return the speed that still fits and is nearest to one that does not."""
+    """Return the value that still fits and is nearest to one that does not."""
     for _ in range(_HALVINGS):
         middle = (beyond + within) / 2.0
         if fits(middle):
