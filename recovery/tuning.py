@@ -147,8 +147,6 @@ UNLIKELY_COST = 8
 #: breadth that counts. Measured: other proposals with 2, other proposals with 1.
 REPETITION_COST = 4
 REPETITION_BREADTH_PART = 3
-#: Steps of lines that are accepted in a row behind a line end. Measured: the same with 1.
-LINE_LOOP_COST = 2
 #: Steps of an alternative ahead of the failure to a rule that was not begun there. Measured: the
 #: same with 1.
 NOT_BEGUN_COST = 2
@@ -230,7 +228,8 @@ ADVANCED_WEIGHT = 0.25
 #: Weight of the lines themselves where nothing behind them in their files can be read. Measured:
 #: other proposals with 0.1.
 LINE_WEIGHT = 0.2
-#: For mending every line that fails at the same token: none is left to explain. Not measured.
+#: For mending every line that fails at the same token: none is left to explain. Measured: without
+#: it the public corpus gets SWITCH with a variable instead of an expression.
 ALL_ALIKE_FACTOR = 1.25
 #: For reading as a name what all lines have as a keyword, and for reserving what most lack.
 #: Measured: 58 clusters with 0.2 for the first alone.

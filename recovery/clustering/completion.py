@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import islice, permutations, product
+from itertools import islice, product
 
 from grammar.notation.edits import (
     AddAlternative,
@@ -34,7 +34,6 @@ from recovery.clustering.edit_merging import combined_edits, merged_as_choice
 from recovery.clustering.edit_trial import changed_rules
 from recovery.clustering.negative_score import no_negatives
 from recovery.clustering.search import LIGHT, CauseSearch
-from recovery.forms.parts import choices
 from recovery.proposals.candidates import Candidate
 from recovery.proposals.edit_site import LinePattern
 
@@ -54,7 +53,7 @@ def completed(search: CauseSearch, cause: Cause) -> Cause:
         if _share(search, proposal, cause.lines) >= tuning.LEAST_COMPLETED:
             more = _with_more(search, proposal, cause.lines, rules)
             if _share(search, more, cause.lines) >= tuning.NEARLY_ALL:
-                whole[proposal] = as_one_rule(search, more)
+                whole[proposal] = more
     found = list(dict.fromkeys(whole.get(proposal, proposal) for proposal in cause.proposals))
     if found != list(cause.proposals):
         found = search.ranked(found, cause.lines)
@@ -67,34 +66,9 @@ def _share(search: CauseSearch, proposal: Proposal, lines: Sequence[int]) -> flo
     return mended / sum(search.weights[n] for n in lines)
 
 
-def as_one_rule(search: CauseSearch, proposal: Proposal) -> Proposal:
-    """Return the proposal; two rules that get much the same alternatives get the same.
-
-    What is missing in both is one rule, of which one place need not show all.
-    """
-    ends = {e.rule: search.finder.closing(e.rule) for e in added_alternatives(proposal)}
-    texts = {rule: dict.fromkeys(_texts(proposal, rule, ends[rule])) for rule in ends}
-    for rule, other in permutations(ends, 2):
-        common = texts[rule].keys() & texts[other].keys()
-        if len(common) > 1 and 2 * len(common) >= min(len(texts[rule]), len(texts[other])):
-            more = (" ".join((t, *ends[rule])) for t in texts[other] if t not in common)
-            edits = combined_edits([AddAlternative(rule, text) for text in more], proposal.edits)
-            wider = search.proposal(edits, proposal.breadth + 1)
-            is_safe = wider.accepts_negatives <= proposal.accepts_negatives
-            if is_safe and wider.mended >= proposal.mended:
-                proposal = wider
-    return proposal
-
-
 def added_alternatives(proposal: Proposal) -> list[AddAlternative]:
     """Return the edits of a proposal that add alternatives."""
     return [edit for edit in proposal.edits if isinstance(edit, AddAlternative)]
-
-
-def _texts(proposal: Proposal, rule: str, end: Sequence[str]) -> list[str]:
-    """Return the alternatives that a rule gets, without line end; each of a choice by itself."""
-    texts = [edit.text for edit in added_alternatives(proposal) if edit.rule == rule]
-    return [text for whole in texts for text in choices(whole.removesuffix(" ".join(("", *end))))]
 
 
 def _with_more(

@@ -1,7 +1,6 @@
 """Joining causes: which of them are one, and with which proposals.
 
-Causes are one if one edit repairs the lines of both: an edit sought anew for causes whose lines
-begin with the same word, or one made from the edits of two causes
+Causes are one if one edit made from the edits of both repairs the lines of both
 (`recovery.clustering.edit_merging`). Causes whose lines fail for the same reason
 (`recovery.clustering.reason`) are one as well.
 """
@@ -31,52 +30,7 @@ from recovery.proposals.grammar_profile import GrammarProfile
 
 def joined(search: CauseSearch, causes: Sequence[Cause], reasons: Sequence[Reason]) -> list[Cause]:
     """Return the causes, those that are one as one; ``reasons[i]`` is why line ``i`` fails."""
-    causes = joined_by_first_word(search, causes)
     return joined_by_reason(search, joined_by_edits(search, causes), reasons)
-
-
-def joined_by_first_word(search: CauseSearch, causes: Sequence[Cause]) -> list[Cause]:
-    """Return the causes; those whose lines begin with the same word are one if one edit fits.
-
-    Each cause was sought for its own lines alone, so an edit for all of them may never have been
-    tried.
-    """
-    led: dict[str, list[Cause]] = defaultdict(list)
-    for cause in causes[: tuning.MOST_COMPARED]:
-        leads = {search.lead(search.lines[n]) for n in cause.lines} if cause.proposals else set()
-        if len(leads) == 1:
-            led[leads.pop()].append(cause)
-    out = list(causes)
-    for word, several in sorted(led.items()):
-        if word and len(several) > 1:
-            one, parts = _found_for_all(search, several)
-            if one is not None:
-                place = out.index(parts[0])
-                out = [cause for cause in out if cause not in parts]
-                out.insert(place, one)
-    return out
-
-
-def _found_for_all(
-    search: CauseSearch, causes: Sequence[Cause]
-) -> tuple[Cause | None, list[Cause]]:
-    """Return a cause that replaces several of the causes, and these; ``None`` if there is none."""
-    lines = sorted(n for cause in causes for n in cause.lines)
-    found = search.best_for(lines, lines)
-    if found is None:
-        return None, []
-    best = found.proposals[0]
-    parts = [
-        cause
-        for cause in causes
-        if best.mended.issuperset(cause.proposals[0].mended.intersection(cause.lines))
-    ]
-    negatives = sum(cause.proposals[0].accepts_negatives for cause in parts)
-    if len(parts) < 2 or best.accepts_negatives > negatives:
-        return None, []
-    best = search.proposal(best.edits, best.breadth)
-    members = tuple(sorted(n for cause in parts for n in cause.lines))
-    return Cause(members, (best, *found.proposals[1:])), parts
 
 
 def joined_by_edits(search: CauseSearch, causes: Sequence[Cause]) -> list[Cause]:

@@ -41,7 +41,7 @@ class ProposalOrder:
         self._count_negatives = count_negatives
         self._parsed_files = parsed_files
 
-    def sorted(
+    def in_order(
         self, proposals: Sequence[Proposal], sought: Sought, alike: Collection[int]
     ) -> list[Proposal]:
         """Return the proposals for the lines that are sought, the best first.

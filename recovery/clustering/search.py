@@ -109,7 +109,7 @@ class CauseSearch:
 
     def _ranked(self, proposals: Iterable[Proposal], sought: Sought) -> list[Proposal]:
         useful = [proposal for proposal in proposals if sought.gain(proposal)]
-        return self.order.sorted(useful, sought, self._alike(sought))
+        return self.order.in_order(useful, sought, self._alike(sought))
 
     def _sought(self, lines: Iterable[int], open_lines: Iterable[int]) -> Sought:
         return Sought(self.lines, self.weights, lines, open_lines)

@@ -1,7 +1,6 @@
 """Edit sites for whole lines of a kind that the grammar does not expect there.
 
-Such lines may be accepted any number of times, as one more alternative where lines can come, or
-because the line end before them was read as something else.
+Such lines may be accepted any number of times, or as one more alternative where lines can come.
 """
 
 from __future__ import annotations
@@ -9,28 +8,24 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from grammar.notation.addresses import Address
-from grammar.notation.edits import AddAlternative, Insert
+from grammar.notation.edits import Insert
 from grammar.parser.lazy_automaton import Configuration
 from grammar.parser.recognizer import State
-from grammar.parser.shortest_paths import Paths
 from recovery.proposals.edit_site import EditSite, RankedEdits, configurations_of, places_of
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.proposals.line_reading import LineReading
 from recovery.proposals.phrases import Phraser
-from recovery.proposals.similarity import Similarity
-from recovery.tuning import LINE_LOOP_COST, SITE_COST, UNLIKELY_COST
+from recovery.tuning import SITE_COST, UNLIKELY_COST
 
 
 class LineSiteFinder:
     """Finds the edit sites of one grammar for whole lines."""
 
-    def __init__(self, profile: GrammarProfile, similarity: Similarity, phraser: Phraser) -> None:
+    def __init__(self, profile: GrammarProfile, phraser: Phraser) -> None:
         self._recognizer = profile.recognizer
         self._grammar = profile.grammar
         self._profile = profile
-        self._similarity = similarity
         self._phraser = phraser
-        self._paths = Paths(profile.recognizer.network)
 
     def find(self, reading: LineReading, *, is_new: bool) -> Iterator[EditSite | RankedEdits]:
         """Yield the sites of a line as a whole; ``is_new`` if its first token could be read."""
@@ -41,8 +36,6 @@ class LineSiteFinder:
             yield from self._blank_line(reading.before(0))
         elif kinds[-1] == line_kind:
             yield from self._as_lines(reading)
-        if reading.failed == 0:
-            yield from self._after_line_end(reading)
 
     def _as_new_line(self, reading: LineReading) -> Iterator[EditSite]:
         """Yield the line as an alternative of a rule behind which its line end can be read."""
@@ -76,7 +69,6 @@ class LineSiteFinder:
             if self._profile.closing(rule) is not None:
                 rank = self._profile.width(rule) + SITE_COST
                 yield EditSite("line", rule, (1, 1), words, rank)
-        yield from self._line_rules_here(before, line_rules)
         for site in reading.configurations(0):
             rule = self._rule_of(site)
             for place, rank in self._between_lines(site):
@@ -89,17 +81,6 @@ class LineSiteFinder:
                     yield steps, (Insert(rule, place, f"{line_rule}*"),)
                 if not line_rules:
                     yield EditSite("lines", rule, place, words, rank + 2 * UNLIKELY_COST)
-
-    def _line_rules_here(self, before: State, line_rules: tuple[str, ...]) -> Iterator[RankedEdits]:
-        """Yield edits that accept known rules of whole lines as another alternative here."""
-        profile = self._profile
-        entered = self._recognizer.entered(before)
-        for rule in sorted(entered & profile.loops & profile.choices_of_lines):
-            for line_rule in line_rules:
-                if line_rule in profile.choices_of_lines and line_rule != rule:
-                    rank = profile.width(rule) + SITE_COST + self._phraser.breadth([line_rule])
-                    rank += self._similarity.dissimilarity(rule, (line_rule,))
-                    yield rank, (AddAlternative(rule, line_rule),)
 
     def _between_lines(self, site: Configuration) -> Iterator[tuple[Address, int]]:
         """Yield the places of a configuration where lines may be inserted, with the breadth."""
@@ -119,32 +100,6 @@ class LineSiteFinder:
         network = self._recognizer.network
         called = {network.rule[entry] for entry, _ in network.calls[site[0]]}
         return bool(called & self._profile.loops & self._profile.choices_of_lines)
-
-    # ------------------------------------------------------------- behind another line end
-
-    def _after_line_end(self, reading: LineReading) -> Iterator[RankedEdits]:
-        """Yield edits that read the line if the line end before it had been read otherwise."""
-        recognizer, profile = self._recognizer, self._profile
-        way = min(map(self._paths.prefix, reading.line.form.before), key=len)
-        if not way or way[-1] != recognizer.line_kind:
-            return
-        state, _ = recognizer.run(recognizer.start, way[:-1])
-        line_rules = self._rules_of_line(reading)
-        for site in configurations_of(recognizer, state):
-            rule = self._rule_of(site)
-            if rule in profile.line_ends:
-                continue
-            goes_on = recognizer.run(recognizer.at(site, state), reading.words[0][:1])[1] is None
-            rank = profile.width(rule) + SITE_COST
-            for place in places_of(recognizer, site):
-                if rule != self._grammar.start and profile.is_at_start(rule, place):
-                    continue
-                if goes_on:
-                    yield rank, (Insert(rule, place, f"{recognizer.lexer.line_end}*"),)
-                for line_rule in line_rules:
-                    steps = rank + self._phraser.breadth([line_rule]) + LINE_LOOP_COST
-                    text = f"({profile.line_end} {line_rule})*"
-                    yield steps, (Insert(rule, place, text),)
 
     def _rules_of_line(self, reading: LineReading) -> tuple[str, ...]:
         """Return the rules of which the line is a whole sentence or the first line.

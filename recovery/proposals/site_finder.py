@@ -38,7 +38,7 @@ class EditSiteFinder:
         self._phraser = phraser
         self._insertions = InsertionSites(profile)
         self._earlier = EarlierSiteFinder(profile, self._insertions)
-        self._lines = LineSiteFinder(profile, similarity, phraser)
+        self._lines = LineSiteFinder(profile, phraser)
 
     def find(self, line: LinePattern) -> Iterator[EditSite | RankedEdits]:
         """Yield the sites of a line, and complete edits; with duplicates."""
@@ -73,11 +73,6 @@ class EditSiteFinder:
         words = reading.words
         for place in places_of(self._recognizer, site):
             yield from self._parts(reading, start, site, place)
-            is_end = 0 < start == len(words) - 1 and words[start][0] == self._recognizer.line_kind
-            if is_end and rule == self._grammar.start:
-                # a line end where the file had to end
-                rank = self._insertions.width(rule) + tuning.SITE_COST
-                yield rank, (Insert(rule, place, f"{self._recognizer.lexer.line_end}*"),)
             yield from self._blocks(rule, place, words[start:])
             yield from self._replacements(reading, start, site, place)
             yield from self._omissions(reading, start, site, place)

@@ -11,7 +11,6 @@ from recovery.clustering.completion import completed, continued
 from recovery.clustering.negative_score import Rivals
 from tests.recovery.clustering.test_joined_causes import (
     GRAMMAR,
-    gathering,
     mends_all,
     search,
     search_in,
@@ -45,13 +44,6 @@ def test_a_proposal_that_cannot_mend_nearly_all_lines_stays_as_it_is() -> None:
     searched = search_in(GRAMMAR, [f"IF A {sign} B\n" for sign in "<>?"])
     cause = Cause((0, 1, 2), (searched.proposal((LESS,), 0),))
     assert cause == completed(searched, cause)
-
-
-def test_what_is_missing_in_two_rules_is_one_rule() -> None:
-    """Each gets what only the other one shows."""
-    searched, added = gathering()
-    one = completed(searched, Cause(tuple(range(5)), (searched.proposal(tuple(added), 0),)))
-    assert {*added, AddAlternative("line", "exit NEWLINE")} == set(one.proposals[0].edits)
 
 
 @pytest.mark.parametrize(

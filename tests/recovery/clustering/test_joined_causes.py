@@ -10,7 +10,6 @@ from grammar.parser.recognizer import Recognizer
 from recovery.clustering.cause import Cause, Proposal
 from recovery.clustering.joined_causes import (
     joined_by_edits,
-    joined_by_first_word,
     joined_by_reason,
 )
 from recovery.clustering.negative_score import NegativeCounter, Rivals, no_negatives
@@ -97,14 +96,6 @@ def test_words_at_one_place_have_one_cause() -> None:
     assert (LESS,) == one.proposals[1].edits
 
 
-def test_lines_that_begin_alike_are_searched_together() -> None:
-    """What mends all of them is found though each cause had an edit of its own."""
-    searched = search()
-    [one] = joined_by_first_word(searched, apart(searched))
-    assert (0, 1, 2, 3) == one.lines
-    assert mends_all(one.proposals[0])
-
-
 def test_causes_stay_apart_where_the_edit_for_both_lets_in_more() -> None:
     """An edit that costs negatives which neither cost is no reason to make two causes one."""
 
@@ -123,7 +114,6 @@ def test_a_cause_that_nothing_mends_is_left_as_it_is() -> None:
     hopeless = Cause((3,), ())
     first, _ = apart(searched)
     assert [first, hopeless] == joined_by_edits(searched, [first, hopeless])
-    assert [first, hopeless] == joined_by_first_word(searched, [first, hopeless])
 
 
 def test_causes_of_one_reason_are_one() -> None:
