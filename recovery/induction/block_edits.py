@@ -41,7 +41,9 @@ class BlockEdits:
                         added = AddAlternative(host, text + self.hosts.ending(host))
                         edits = (*self.forms.reserving(text), added)
                         title = f"{block.opener} to {block.closer} as {host}"
-                        yield InferredStep(title, edits, members, is_block=True)
+                        yield InferredStep(
+                            title, edits, members, is_block=True, is_known=block.is_spelt
+                        )
 
     def _opening(self, block: BlockLines) -> tuple[int, ...]:
         """Return the lines that open a block."""
@@ -123,9 +125,13 @@ def blocks_of(
         ]
         free = {w for w in leads if w.isidentifier() and not vocabulary.is_written(w)}
         free -= frozenset().union(*(block.words for block in found))
-        some = find_blocks(files, free, (origins, BALANCED_FILES if least > 1 else 1))
+        needed = origins, BALANCED_FILES if least > 1 else 1
         opened = Counter(leads[n] for numbers in keywords.corpus.of_file for n in numbers)
-        found += [block for block in some if opened[block.opener] >= SEVERAL]
+        found += (
+            block
+            for block in find_blocks(files, free, needed, keywords.spelt)
+            if opened[block.opener] >= SEVERAL or block.is_spelt
+        )
     return found
 
 

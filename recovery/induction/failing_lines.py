@@ -15,7 +15,13 @@ from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.induction.language import CorpusFile
 from recovery.ledger.construct import Evidence
 from recovery.proposals.edit_site import LinePattern
-from recovery.tuning import PLACES_IN_ONE_FILE, PLACES_REMEMBERED, PLACES_SHOWN, SEVERAL
+from recovery.tuning import (
+    LEAST_FILES_ALONE,
+    PLACES_IN_ONE_FILE,
+    PLACES_REMEMBERED,
+    PLACES_SHOWN,
+    SEVERAL,
+)
 
 
 @dataclass(slots=True)
@@ -86,6 +92,16 @@ class FailingLines:
         """Return how many different texts these lines have."""
         return len({text for n in lines for text in self.occurrences[n].texts})
 
+    def has_rare_word(self, lines: Collection[int], edits: Sequence[Edit]) -> bool:
+        """Return whether edits reserve a word that only one file has in these lines."""
+        some = [self.occurrences[n] for n in lines]
+        return any(
+            len({p for line in some if any(edit.name in t for t in line.texts) for p in line.files})
+            < LEAST_FILES_ALONE
+            for edit in edits
+            if isinstance(edit, AddToken)
+        )
+
     def have_one_word(self, lines: Set[int]) -> bool:
         """Return whether lines fail at a name behind another one, and it is the same in all."""
         found: set[str] = set()
@@ -113,13 +129,13 @@ class FailingLines:
         is_word = any(isinstance(edit, AddToken) for edit in edits)
         # where nothing else is wrong in a file a form that is known may grow by a single line, but
         # not by a word where a name stands; and two lines show a new form with a new word
-        if places >= PLACES_IN_ONE_FILE or not (is_new or self._are_misnamed(lines, recognizer)):
+        if places >= PLACES_IN_ONE_FILE or not (is_new or self.are_misnamed(lines, recognizer)):
             known = {n for n, pattern in enumerate(self.patterns) if pattern in explained}
             if any(self._of_file[p] <= lines | known for line in some for p in line.files):
                 return True
         return self.distinct(lines) >= SEVERAL if is_word else places >= PLACES_IN_ONE_FILE
 
-    def _are_misnamed(self, lines: Set[int], recognizer: Recognizer) -> bool:
+    def are_misnamed(self, lines: Set[int], recognizer: Recognizer) -> bool:
         """Return whether all lines parse with a name for the reserved word at which they fail."""
         lexer = recognizer.lexer
         for form in (self.patterns[n].form for n in lines):

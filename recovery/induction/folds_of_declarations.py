@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
-from itertools import combinations, pairwise, product, takewhile
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
+from itertools import combinations, dropwhile, pairwise, product, takewhile
 
+from grammar.notation.addresses import Address, sequence_at, sequences
 from grammar.notation.edits import AddAlternative, Edit, Insert, RemoveAlternative, Replace
-from grammar.notation.model import Element, Group, Literal, Reference, Repeat, Rule, walk
+from grammar.notation.model import (
+    Alternative,
+    Element,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    Rule,
+    walk,
+)
 from recovery.brackets import BRACKETS
 from recovery.forms.operand_rules import bracket_pairs
 from recovery.forms.samples import samples_of
-from recovery.induction.grammar_view import GrammarView
+from recovery.induction.grammar_view import GrammarView, sign_of
 from recovery.induction.steps import InferredStep
 from recovery.tuning import RULE_SYMBOLS
 
@@ -53,19 +64,65 @@ def brackets(view: GrammarView) -> Iterator[InferredStep]:
         for number, alternative in enumerate(() if _is_inner(view, rule) else rule.alternatives, 1):
             for sign, start, end in bracket_pairs(alternative):
                 inside = alternative.elements[start + 1 : end]
-                if start and inside and view.is_name(alternative.elements[start - 1]):
+                if start and view.is_name(alternative.elements[start - 1]):
                     found[sign].append((number, start + 2, inside))
         for sign, contents in found.items():
             shapes = [s for *_, inside in contents for s in samples_of(view.rules, inside)]
-            form = view.form(dict.fromkeys(shapes))
+            form = view.form(dict.fromkeys(shapes)) or ""
             edits = tuple(
-                Replace(rule.name, (number, at), form or "", len(inside))
+                Replace(rule.name, (number, at), form, len(inside))
+                if inside
+                else Insert(rule.name, (number, at), form)
                 for number, at, inside in contents
                 if view.source(rule.name, inside) != form
             )
             title = f"one form between {sign} and {BRACKETS[sign]} in {rule.name}"
             if form and len(contents) > 1:
                 yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
+
+
+def lists_of_two(view: GrammarView) -> Iterator[InferredStep]:
+    """Yield any number of items where one and two are read, and no third: these are lists."""
+    for rule in view.grammar.parser_rules:
+        is_line = rule.name not in view.rules.recursive
+        edits: list[Edit] = []
+        for address, sequence in sequences(rule) if is_line else ():
+            is_bounded = any(sign_of(e) == "','" for e in sequence.elements[:1])
+            for place, element in enumerate(() if is_bounded else sequence.elements):
+                match element:
+                    case Repeat(item=Group(alternatives=(Alternative(elements=(comma, *item)),))):
+                        ahead = sequence.elements[max(0, place - len(item)) : place]
+                        is_item = view.source(rule.name, item) == view.source(rule.name, ahead)
+                        if element.operator == "?" and sign_of(comma) == "','" and item and is_item:
+                            text = f"{rule.source_of(element).removesuffix('?')}*"
+                            edits.append(Replace(rule.name, (*address, place + 1), text))
+        title = f"a list of any length in {rule.name}"
+        yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS)
+
+
+def modes(view: GrammarView) -> Iterator[InferredStep]:
+    """Yield one choice for the words that follow a name or type and the same sign."""
+    found: dict[str, list[tuple[Rule, Address, frozenset[str]]]] = defaultdict(list)
+    for rule in view.grammar.parser_rules:
+        for address, sequence in sequences(rule) if rule.name not in view.rules.recursive else ():
+            for place, (ahead, sign, word) in enumerate(_threes(sequence.elements), 3):
+                words = view.words(word)
+                is_mode = bool(words) and words <= view.reserved
+                if sign_of(sign) and is_mode and (view.is_name(ahead) or _is_kind(view, ahead)):
+                    found[sign_of(sign)].append((rule, (*address, place), words))
+    for text, places in found.items():
+        every = sorted(frozenset[str]().union(*(words for *_, words in places)))
+        edits = tuple(
+            Replace(rule.name, at, f"({' | '.join(every)})")
+            for rule, at, words in places
+            if len(words) < len(every)
+        )
+        title = f"{', '.join(every)} behind {text}"
+        yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
+
+
+def _threes(elements: Sequence[Element]) -> Iterator[tuple[Element, Element, Element]]:
+    return zip(elements, elements[1:], elements[2:], strict=False)
 
 
 def modifiers(view: GrammarView) -> Iterator[InferredStep]:
@@ -152,6 +209,39 @@ def undeclared(view: GrammarView) -> Iterator[InferredStep]:
                     yield InferredStep(f"{title} in {rule.name}", edits, (), breadth=breadth)
 
 
+def undeclared_elsewhere(view: GrammarView) -> Iterator[InferredStep]:
+    """Yield types without the word ahead of them, in a rule that only has them with it.
+
+    Lines of another rule have these types without a word.
+    """
+    if view.kind not in view.grammar.by_name:
+        return
+    typed: list[tuple[str, int, str, str]] = []
+    for rule, number, (first, *others) in view.lines():
+        if rule.name in view.rules.recursive:
+            continue
+        if _is_kind(view, first) and view.is_name(others[0]):
+            typed.append((rule.name, number, "", view.source(rule.name, others)))
+        rests: list[Sequence[Element]] = [others]
+        if len(others) == 1 and isinstance(others[0], Group):
+            rests = [alternative.elements for alternative in others[0].alternatives]
+        for rest in rests if len(_modifiers(view, first)) == 1 else ():
+            between = list(takewhile(view.is_ending, rest))
+            kind, *name = rest[len(between) :] or (first,)
+            is_any = isinstance(kind, Reference) and kind.name in view.rules.type_rules
+            if is_any and name and view.is_name(name[0]):
+                ahead, behind = (view.source(rule.name, some) for some in (between, name))
+                typed.append((rule.name, number, ahead, behind))
+    free = {name for name, number, *_ in typed if _is_kind(view, view.line(name, number)[0])}
+    for host, number, ahead, behind in typed if free else ():
+        if host not in free:
+            elements = view.alternative(host, number).elements
+            end = view.source(host, elements[len(view.line(host, number)) :])
+            text = " ".join(filter(None, (ahead, view.kind, behind, end)))
+            title = f"{view.kind} without a word ahead in {host}"
+            yield InferredStep(title, (AddAlternative(host, text),), (), breadth=2 * RULE_SYMBOLS)
+
+
 def types(view: GrammarView) -> Iterator[InferredStep]:
     """Yield any type behind other words, where a line that begins with the same word has any.
 
@@ -185,6 +275,93 @@ def types(view: GrammarView) -> Iterator[InferredStep]:
             edits += (AddAlternative(kind_rule, w) for w in sorted(view.words(element) - known))
             title = f"any type behind {min(words)} {between} in {rule.name}"
             yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS)
+
+
+def kinds(view: GrammarView) -> Iterator[InferredStep]:
+    """Yield any word of a kind ahead of a declared name, where only some of them were seen."""
+    if view.kind not in view.grammar.by_name:
+        return
+    every = view.profile.vocabulary.words_of(view.kind)
+    for rule in view.grammar.parser_rules:
+        edits = tuple(
+            Replace(rule.name, (*address, place), view.kind)
+            for address, sequence in sequences(rule)
+            for place, (element, name) in enumerate(pairwise(sequence.elements), 1)
+            if view.is_name(name) and (words := view.words(element)) < every and words
+        )
+        title = f"any word of {view.kind} in {rule.name}"
+        yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS)
+
+
+def words_of_a_kind(view: GrammarView) -> Iterator[InferredStep]:
+    """Yield words that stand where those of a kind do, ahead of a declared name, as one of these.
+
+    A word is of the kind if a name follows wherever it stands, and no operand or bracket follows
+    that, and if it is behind the same word as one of the kind, or begins lines of a rule of which
+    most begin so.
+    """
+    if view.kind not in view.grammar.by_name:
+        return
+    typed: set[tuple[str, str]] = set()
+    found: dict[str, set[tuple[str, str]]] = defaultdict(set)
+    others: set[str] = set()
+    lists = {view.kind, view.rules.names, *view.profile.vocabulary.word_lists}
+    for rule in (r for r in view.grammar.parser_rules if r.name not in lists):
+        declares = 2 * sum(map(partial(_is_declared, view), rule.alternatives))
+        is_first = frozenset({""} if declares < len(rule.alternatives) else ())
+        for address, sequence in sequences(rule):
+            elements = sequence.elements
+            for place, element in enumerate(elements):
+                words = view.words(element.item if isinstance(element, Repeat) else element)
+                is_typed = _is_kind(view, element)
+                name, behind = elements[place + 1 : place + 2], elements[place + 2 :]
+                is_declared = bool(name) and view.is_name(name[0]) and not _is_part(view, behind)
+                ahead = _words_ahead(view, rule, address, place) - is_first
+                for word in words & view.reserved:
+                    if is_declared:
+                        found[word] |= {(rule.name, a) for a in ahead}
+                    else:
+                        others.add(word)
+                typed |= {(rule.name, a) for a in ahead if is_typed and is_declared}
+    wide = next(iter(view.rules.type_rules))
+    for word in sorted(w for w in found.keys() - others if found[w] & typed):
+        edits = [AddAlternative(name, word) for name in (view.kind, wide)]
+        yield InferredStep(f"{word} as {view.kind}", tuple(edits), (), breadth=RULE_SYMBOLS)
+
+
+def _is_declared(view: GrammarView, alternative: Alternative) -> bool:
+    """Return whether a type ahead of a name is the first of an alternative, but for other words."""
+    elements = list(dropwhile(lambda e: bool(_modifiers(view, e)), alternative.elements))
+    return len(elements) > 1 and _is_kind(view, elements[0]) and view.is_name(elements[1])
+
+
+def _is_part(view: GrammarView, behind: Iterable[Element]) -> bool:
+    """Return whether an operand or a bracket is behind a name, so that it is no variable.
+
+    What may be missing is left out: a size, or further names.
+    """
+    match next((e for e in behind if not isinstance(e, Repeat)), None):
+        case Literal(text=text):
+            return text not in ("=", ",")
+        case Reference(name=name):
+            return name not in (view.profile.line_end, view.lexer.line_end)
+        case None:
+            return False
+    return True
+
+
+def _words_ahead(view: GrammarView, rule: Rule, address: Address, place: int) -> frozenset[str]:
+    """Return the words that may be ahead of an element; an empty one if it may begin a line."""
+    elements = sequence_at(rule, address).elements
+    if place:
+        element = elements[place - 1]
+        words = view.words(element.item if isinstance(element, Repeat) else element)
+        is_free = isinstance(element, Repeat) and element.operator != "+"
+        return words | (_words_ahead(view, rule, address, place - 1) if is_free else frozenset())
+    if len(address) == 1:
+        return frozenset({""})
+    *outer, at, _ = address
+    return _words_ahead(view, rule, tuple(outer), at - 1)
 
 
 def _declares(view: GrammarView, elements: Sequence[Element]) -> bool:

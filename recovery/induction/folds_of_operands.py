@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
-from itertools import takewhile
+from itertools import pairwise, takewhile
 
 from grammar.notation.addresses import Address, element_at, sequences
 from grammar.notation.edits import (
@@ -15,7 +15,18 @@ from grammar.notation.edits import (
     Replace,
     Widen,
 )
-from grammar.notation.model import Alternative, Element, Group, Reference, Repeat, Rule, walk
+from grammar.notation.model import (
+    Alternative,
+    Element,
+    Group,
+    Literal,
+    Reference,
+    Repeat,
+    Rule,
+    walk,
+)
+from recovery.brackets import BRACKETS, CLOSING
+from recovery.forms.samples import samples_of
 from recovery.induction.grammar_view import GrammarView, sign_of
 from recovery.induction.line_symbols import PREFIXES
 from recovery.induction.steps import InferredStep
@@ -94,7 +105,7 @@ def signs(view: GrammarView) -> Iterator[InferredStep]:
 
 
 def variables(view: GrammarView) -> Iterator[InferredStep]:
-    """Variables where only values were seen, in lines or blocks that read variables too.
+    """Variables where only values were seen, behind a word or in lines that read variables too.
 
     What one form of a statement reads its other forms read.
     """
@@ -121,10 +132,68 @@ def variables(view: GrammarView) -> Iterator[InferredStep]:
                 if address[0] == number and not _is_beside(rule, address, reading)
                 for place, element in enumerate(sequence.elements, 1)
                 if isinstance(element, Reference) and element.name in values
+                if called & reading or _is_led(view, sequence.elements[: place - 1])
             )
-            if edits and called & reading:
+            if edits:
                 title = f"variables beside values in {rule.name} {number}"
                 yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
+
+
+def _is_led(view: GrammarView, ahead: Sequence[Element]) -> bool:
+    """Return whether a reserved word is right ahead."""
+    words = view.words(ahead[-1]) if ahead else frozenset()
+    return bool(words) and words <= view.reserved
+
+
+def behind_signs(view: GrammarView) -> Iterator[InferredStep]:
+    """Yield the same operands behind a sign such as ``=`` wherever the lines of a rule have it."""
+    for rule in view.grammar.parser_rules:
+        if rule.name in view.rules.recursive:
+            continue
+        found: dict[str, list[tuple[Address, Element]]] = defaultdict(list)
+        for address, sequence in sequences(rule):
+            for place, (sign, operand) in enumerate(pairwise(sequence.elements), 2):
+                if isinstance(sign, Literal) and sign.text not in (",", *BRACKETS, *CLOSING):
+                    found[sign.text].append(((*address, place), operand))
+        for text, operands in found.items():
+            texts = dict.fromkeys(view.source(rule.name, [o]) for _, o in operands)
+            if len(texts) < 2 or not all(_is_operand(view, o) for _, o in operands):
+                continue
+            widest = view.rules.widest
+            if widest and all(_is_any(view, o) for _, o in operands):
+                form: str | None = widest
+            else:
+                shapes = [s for _, o in operands for s in samples_of(view.rules, [o])]
+                form = view.form(dict.fromkeys(shapes))
+            edits = tuple(
+                Replace(rule.name, at, form)
+                for at, operand in operands
+                if form and view.source(rule.name, [operand]) != form
+            )
+            title = f"the same operands behind {text} in {rule.name}"
+            yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
+
+
+def _is_any(view: GrammarView, element: Element) -> bool:
+    """Return whether the rule of all operands may be what an element is."""
+    match element:
+        case Group(alternatives=alternatives):
+            return all(_is_any(view, e) for a in alternatives for e in a.elements)
+        case Reference(name=name, is_token=False):
+            return view.rules.includes(view.rules.widest or "", name)
+    return False
+
+
+def _is_operand(view: GrammarView, element: Element) -> bool:
+    """Return whether an element is a rule of operands, or a choice of them."""
+    match element:
+        case Group(alternatives=alternatives):
+            return all([_is_operand(view, e) for e in a.elements] == [True] for a in alternatives)
+        case Reference(name=name, is_token=True):
+            return view.lexer.has_value(view.lexer.kind_of[name])
+        case Reference(name=name):
+            return view.is_name(element) or not view.words(element)
+    return False
 
 
 def any_operands(view: GrammarView) -> Iterator[InferredStep]:

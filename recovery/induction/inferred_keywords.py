@@ -23,6 +23,7 @@ from grammar.parser.failures import Failure
 from grammar.parser.lexer import SKIPPED, Lexer
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.language import CorpusFile
+from recovery.induction.spelt_blocks import spelt_blocks
 from recovery.survey.failing_line import source_lines
 from recovery.survey.suspected_keywords import names_of_line
 from recovery.tuning import (
@@ -86,13 +87,15 @@ class _Uses:
     """Uses of a word in some contexts: the origins, and the files of each different line.
 
     ``operators`` are the files with the word between operands of an expression, ``followed`` those
-    with the word ahead of two operands, as a type of two names would be.
+    with the word ahead of two operands, as a type of two names would be; ``beside`` those with each
+    other name right beside it.
     """
 
     origins: set[str] = field(default_factory=set)
     files: int = 0
     operators: int = 0
     followed: int = 0
+    beside: Counter[str] = field(default_factory=Counter)
 
 
 def names_read(
@@ -135,7 +138,8 @@ class InferredKeywords:
 
         ``types`` are reserved words that stand where the names of types may. ``least`` is
         how many origins a form needs; where it is 1, two files of one origin show a word too.
-        With ``least_files`` of 1 a word between operands of an expression needs no second one.
+        With ``least_files`` of 1 a word between operands of an expression needs no second one, and
+        with 0 no word does.
         """
         self.corpus = corpus
         self.lexer = lexer
@@ -159,16 +163,20 @@ class InferredKeywords:
         }
         self._closed = (heads | few) - {_PLAIN}
         every, closed = _total(contexts.values()), _total(contexts[c] for c in self._closed)
+        closed = _total(
+            contexts[c] if c in heads else _without_names(contexts[c], closed) for c in self._closed
+        )
         head = _total(contexts[c] for c in heads)
-        alone = INFERRED_FILES_ALONE if least > 1 else LEAST_FILES_ALONE
+        alone = INFERRED_FILES_ALONE if least > 1 else min(LEAST_FILES_ALONE, least_files + 1)
         type_names = self._type_names() if least == 1 else frozenset()
-        self.words = frozenset(
+        self.spelt = spelt_blocks(corpus, lexer)
+        self.words = frozenset(word for pair in self.spelt for word in pair).union(
             word
             for word, uses in closed.items()
             if word not in type_names
             if (len(uses.origins) >= SEVERAL_ORIGINS and uses.files >= SEVERAL_FILES)
             or uses.files >= alone
-            or (least_files == 1 and every[word].operators == every[word].files)
+            or (least_files <= 1 and every[word].operators == every[word].files)
             if head[word].files >= SEVERAL_FILES or uses.files >= INFERRED_SHARE * every[word].files
         )
         # what a word behind a reserved one declares, as types do, ends there, or a sign goes on
@@ -199,7 +207,7 @@ class InferredKeywords:
         found: dict[_Context, dict[str, _Uses]] = defaultdict(lambda: defaultdict(_Uses))
         corpus = self.corpus
         # at the end what is alone on several lines of one file is a word too
-        often = Counter(n for numbers in corpus.of_file if self.least[1] == 1 for n in numbers)
+        often = Counter(n for numbers in corpus.of_file if self.least[1] <= 1 for n in numbers)
         every = zip(corpus.lines, corpus.counts, corpus.origins, strict=True)
         for number, (line, files, origins) in enumerate(every):
             count = often[number] if len(line) == 1 and often[number] >= SEVERAL else files
@@ -209,6 +217,8 @@ class InferredKeywords:
                 uses = found[context][word]
                 uses.origins |= origins
                 uses.files += count
+                for other in line[max(place - 1, 0) : place] + line[place + 1 : place + 2]:
+                    uses.beside[other] += count
                 if context.is_of_types and self._is_beside(line, place + 1):
                     uses.followed += count
                 if context[1:] == (_OPERAND, _OPERAND) and _in_expression(line, place):
@@ -235,7 +245,12 @@ class InferredKeywords:
                         others.add(line[place])
                     else:
                         found[line[0], line[place - 1]].add(line[place])
-        names = frozenset[str]().union(*(found[around] for around in typed)) - others
+        heads = {head for head, _ in typed}  # of few lines none may have a type right there
+        is_like = (heads if self.least[1] == 0 else set()).__contains__
+        names = frozenset[str]().union(
+            *(found[at] for at in found if at in typed or is_like(at[0]))
+        )
+        names -= others
         declared = {b for line in self.corpus.lines for a, b in pairwise(line) if a in names}
         return names | (declared - others)
 
@@ -333,6 +348,20 @@ class InferredKeywords:
             # the first word of a line says what may come behind it, whether it is known or not
             return _OPERAND if place else line[0]
         return _TYPE if line[place] in self._types else line[place]
+
+
+def _without_names(words: Mapping[str, _Uses], every: Mapping[str, _Uses]) -> dict[str, _Uses]:
+    """Return the words of a context without names: several beside the same word that has more uses.
+
+    Of two words side by side one is a keyword. It is the one that explains more lines.
+    """
+    names: dict[str, set[str]] = defaultdict(set)
+    for word, uses in words.items():
+        for other, count in uses.beside.items() if len(uses.origins) == 1 else ():
+            if count == uses.files < every.get(other, uses).files and other not in words:
+                names[other].add(word)
+    known = frozenset[str]().union(*(some for some in names.values() if len(some) >= SEVERAL))
+    return {word: uses for word, uses in words.items() if word not in known}
 
 
 def _total(contexts: Iterable[Mapping[str, _Uses]]) -> defaultdict[str, _Uses]:

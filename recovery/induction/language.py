@@ -12,7 +12,7 @@ from pathlib import Path
 
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative
-from recovery.negatives.tokens import RESERVED, line
+from recovery.negatives.tokens import RESERVED, RESERVED_FIRST, line
 from support.files.decode import digest
 from support.files.discovery import IngestError, source_files
 from support.files.untrusted import read_bytes
@@ -61,7 +61,7 @@ def _krl_source(roots: Sequence[Path]) -> Iterable[tuple[str, str, bytes, str]]:
 KRL = Language(
     _krl_source,
     lambda count, seed: generate(count=count, seed=seed),
-    lambda text: RESERVED.intersection(line(text).kinds),
+    lambda text: (RESERVED | RESERVED_FIRST).intersection(line(text).kinds),
 )
 
 

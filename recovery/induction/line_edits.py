@@ -88,7 +88,9 @@ class LineEdits:
             fresh = {other, *self.at.rules.reaches[other]} - {host, *self.at.rules.reaches[host]}
             known = self.at.grammar.by_name
             breadth = sum(len(known[name].alternatives) for name in fresh if name in known)
-            yield InferredStep(f"{other} as {host}", edits, tuple(members), breadth=breadth)
+            yield InferredStep(
+                f"{other} as {host}", edits, tuple(members), is_known=True, breadth=breadth
+            )
 
     def _statements(self) -> Iterator[InferredStep]:
         """Forms of lines by their first word, or first sign where they begin with a name."""

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import cached_property
 from itertools import pairwise
 
+from grammar.notation.model import Reference
 from grammar.parser.failures import FailureContext
 from grammar.parser.recognizer import Recognizer, State
 from recovery.brackets import BRACKETS, CLOSING, left_open
+from recovery.forms.lists import split_at_commas
 from recovery.forms.operand_rules import OperandRules, bracket_pairs
 from recovery.forms.symbol_reader import SymbolReader
 from recovery.forms.symbols import Operand, Symbol, Token
@@ -71,17 +74,45 @@ class LineSymbols:
         )
 
     def known_groups(self, symbols: Sequence[Symbol]) -> tuple[Symbol, ...]:
-        """Return the symbols with each group that a rule reads as an operand of that rule."""
-        out = []
+        """Return the symbols with each group that a rule reads as an operand of that rule.
+
+        That is so of a call too, if only an operand is missing between its commas.
+        """
+        out: list[Symbol] = []
         for symbol in symbols:
             rule = self.rules.bracketed.get(symbol.text.strip("'"))
-            if symbol.inside is not None and rule:
+            call = self._calls.get(symbol.text)
+            if symbol.inside is not None and call and self._is_called(out, symbol.inside):
+                out[-1] = Symbol("", Operand((), call))
+            elif symbol.inside is not None and rule:
                 # what only follows operands, as an index, is written as its rule
                 follows = rule in self.rules.recursive and rule not in self.rules.ladder
                 out.append(Symbol(rule) if follows else Symbol("", Operand((), rule)))
             else:
                 out.append(symbol)
         return tuple(out)
+
+    def _is_called(self, ahead: Sequence[Symbol], inside: Sequence[Symbol]) -> bool:
+        """Return whether a name is ahead of operands with commas between, of which some lack."""
+        is_named = ahead and ahead[-1].operand == Operand((self.lexer.name_kind,))
+        items = split_at_commas(inside)
+        return bool(is_named) and all(
+            len(item) < 2 and all(s.is_operand for s in item) for item in items
+        )
+
+    @cached_property
+    def _calls(self) -> dict[str, str]:
+        """The rules of operands that are a name ahead of something in brackets, by its opening."""
+        names = {self.rules.names, self.lexer.name}
+        return {
+            f"'{opening}'": rule
+            for rule in self.rules.ladder
+            for alternative in self.grammar.by_name[rule].alternatives
+            for first in alternative.elements[:1]
+            for opening, start, end in bracket_pairs(alternative)
+            if isinstance(first, Reference) and first.name in names
+            if start == 1 and end == len(alternative.elements) - 1
+        }
 
     def shown(self, token: Token) -> str:
         """Return the text of a sign or word, or the name of another kind; empty for no token."""

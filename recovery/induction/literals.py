@@ -1,16 +1,18 @@
 """Forms of literals that the lexer splits: ``1.5E-3`` read as a number, a name, a sign.
 
 Two operands are never adjacent without a blank. If a literal and a name are, they are one literal;
-its characters by class form a chain as the symbols of a line do.
+its characters by class form a chain as the symbols of a line do. A text in quotes that a token
+reads but for its blanks is one of that token.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from grammar.notation.edits import AddAlternative
-from grammar.parser.lexer import Lexer
+from grammar.notation.edits import AddAlternative, Replace, apply
+from grammar.notation.model import Alternative, CharSet, Element, Grammar, Literal, Repeat
+from grammar.parser.lexer import ERROR, Lexer, lexer_of
 from recovery.forms.chain import Factor, chain_of
 
 _SIGNS = frozenset("+-")
@@ -39,6 +41,42 @@ def split_literals(
     texts = tuple(dict.fromkeys(owners[owner]))
     text = " ".join(map(_written, chain_of(map(_classes, texts))))
     return AddAlternative(owner, text), frozenset(files), texts
+
+
+def spaced_literals(grammar: Grammar, texts: Sequence[str]) -> tuple[Replace, ...]:
+    """Return the blanks that let tokens read texts in quotes; none if they do not read them all."""
+
+    def read(*edits: Replace) -> set[str]:
+        lexer = lexer_of(apply(grammar, edits))
+        return {text for text in texts if lexer.kinds[text] != ERROR}
+
+    found = tuple(edit for edit in blanks_between_quotes(grammar) if read(edit))
+    return found if len(read(*found)) == len(set(texts)) else ()
+
+
+def blanks_between_quotes(grammar: Grammar) -> Iterator[Replace]:
+    """Yield blanks for each token that has a row of the same characters, but none, in quotes."""
+    for rule in grammar.rules:
+        quoted = ((n, a) for n, a in enumerate(rule.alternatives, 1) if is_quoted(a))
+        for number, alternative in quoted if rule.is_lexer else ():
+            for place, element in enumerate(alternative.elements, 1):
+                match element:
+                    case Repeat(item=CharSet() as some, operator="+") if not has_blank(some):
+                        one = rule.source_of(some)
+                        yield Replace(rule.name, (number, place), f"' '* {one} ({one} | ' ')*")
+
+
+def is_quoted(alternative: Alternative) -> bool:
+    """Return whether a token begins and ends with the same sign."""
+    match alternative.elements:
+        case (Literal(text=first), *_, Literal(text=last)):
+            return first[0] == last and not last.isalnum()
+    return False
+
+
+def has_blank(element: Element) -> bool:
+    """Return whether an element is a set of characters with the blank."""
+    return isinstance(element, CharSet) and any(a <= ord(" ") <= b for a, b in element.ranges)
 
 
 def _touching(line: str, lexer: Lexer) -> Iterable[tuple[str, str]]:

@@ -9,39 +9,35 @@ would hide what the files show.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Set
 
 from grammar.notation.addresses import sequences
 from grammar.notation.edits import AddAlternative, Replace
-from grammar.notation.model import (
-    Alternative,
-    CharSet,
-    Element,
-    Group,
-    Literal,
-    Reference,
-    Repeat,
-    walk,
-)
+from grammar.notation.model import Group, Reference, Repeat, walk
 from grammar.parser.lexer import Lexer
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.grammar_view import GrammarView
+from recovery.induction.literals import blanks_between_quotes, has_blank, is_quoted
 from recovery.induction.steps import InferredStep
 from recovery.tuning import SEVERAL
 
 
-def is_open(lexer: Lexer, lines: CorpusLines) -> bool:
-    """Return whether several reserved words are each of a single origin, where there are others."""
+def rare_words(lexer: Lexer, lines: CorpusLines) -> frozenset[str]:
+    """Return the reserved words that are each of a single origin, where there are others."""
     having: dict[str, set[str]] = defaultdict(set)
     for line, origins in zip(lines.lines, lines.origins, strict=True):
         for word in set(line):
-            having[word] |= origins
-    alone = [w for w in having if len(having[w]) == 1 and lexer.is_keyword(lexer.kinds[w])]
-    return len(alone) >= SEVERAL and len(frozenset().union(*lines.origins)) > 1
+            having[lexer.names[lexer.kinds[word]]] |= origins
+    several = len(frozenset[str]().union(*lines.origins)) > 1
+    words = [name for name in having if several and lexer.is_keyword(lexer.kind_of[name])]
+    return frozenset(name for name in words if len(having[name]) == 1)
 
 
-def open_choices(view: GrammarView) -> Iterator[InferredStep]:
-    """Yield any word beside each choice of words of lines; a word between operands says more."""
+def open_choices(view: GrammarView, rare: Set[str]) -> Iterator[InferredStep]:
+    """Yield any word beside each choice of words of lines with a rare one.
+
+    A word between operands says more.
+    """
     found: dict[frozenset[str], list[Replace]] = defaultdict(list)
     for rule in view.grammar.parser_rules:
         is_line = rule.name not in view.rules.recursive
@@ -50,14 +46,14 @@ def open_choices(view: GrammarView) -> Iterator[InferredStep]:
                 often = element.operator if isinstance(element, Repeat) else ""
                 group = element.item if isinstance(element, Repeat) else element
                 words = view.words(group) if isinstance(group, Group) else frozenset()
-                if len(words) > 1 and words <= view.reserved:
+                if len(words) > 1 and words <= view.reserved and words & rare:
                     text = f"({' | '.join(sorted(words))} | {_name(view)}){often}"
                     found[words].append(Replace(rule.name, (*address, place), text))
     for words, edits in found.items():
         yield InferredStep(f"any word beside {', '.join(sorted(words))}", tuple(edits), ())
 
 
-def open_statements(view: GrammarView) -> Iterator[InferredStep]:
+def open_statements(view: GrammarView, _rare: Set[str]) -> Iterator[InferredStep]:
     """Yield any word ahead of a variable, with all that follows operands behind a first word."""
     variable = view.writer.cover.variable
     reading = view.rules.including(variable) if variable else frozenset[str]()
@@ -79,47 +75,37 @@ def open_statements(view: GrammarView) -> Iterator[InferredStep]:
         yield InferredStep(title, (AddAlternative(host.name, text),), ())
 
 
-def blanks_in_quotes(view: GrammarView) -> Iterator[InferredStep]:
+def open_words(view: GrammarView, _rare: Set[str]) -> Iterator[InferredStep]:
+    """Yield any word alone on a line, where several words are."""
+    alone: dict[str, set[str]] = defaultdict(set)
+    for rule in view.grammar.parser_rules:
+        single = (a.elements[0] for a in rule.alternatives if len(a.elements) == 1)
+        for words in map(view.words, single):
+            alone[rule.name] |= words if words - {view.lexer.name} <= view.reserved else set()
+    name = max(alone, key=lambda rule: len(alone[rule]), default="")
+    is_host = name and len(alone[name]) >= SEVERAL and name not in view.rules.recursive
+    if is_host and view.lexer.name not in alone[name]:
+        yield InferredStep(f"any word as {name}", (AddAlternative(name, _name(view)),), ())
+
+
+def blanks_in_quotes(view: GrammarView, _rare: Set[str]) -> Iterator[InferredStep]:
     """Yield blanks in texts between quotes, where those between other quotes have some."""
-    quoted = [
-        (rule, number, alternative.elements)
-        for rule in view.grammar.rules
-        if rule.is_lexer
-        for number, alternative in enumerate(rule.alternatives, 1)
-        if _is_quoted(alternative)
-    ]
-    if not any(_has_blank(e) for *_, elements in quoted for part in elements for e in walk(part)):
-        return
-    for rule, number, elements in quoted:
-        for place, element in enumerate(elements, 1):
-            match element:
-                case Repeat(item=CharSet() as some, operator="+") if not _has_blank(some):
-                    one = rule.source_of(some)
-                    edits = (Replace(rule.name, (number, place), f"' '* {one} ({one} | ' ')*"),)
-                    yield InferredStep(f"blanks in {rule.name} {number}", edits, ())
+    tokens = [a for r in view.grammar.rules if r.is_lexer for a in r.alternatives if is_quoted(a)]
+    if any(has_blank(inner) for a in tokens for e in a.elements for inner in walk(e)):
+        for edit in blanks_between_quotes(view.grammar):
+            title = f"blanks in {edit.rule} {edit.at[0]}"
+            yield InferredStep(title, (edit,), ())
 
 
 #: The kinds of opening, in the order in which they are made.
-OPENINGS: tuple[Callable[[GrammarView], Iterator[InferredStep]], ...] = (
+OPENINGS: tuple[Callable[[GrammarView, Set[str]], Iterator[InferredStep]], ...] = (
     blanks_in_quotes,
     open_choices,
     open_statements,
+    open_words,
 )
 
 
 def _name(view: GrammarView) -> str:
     """Return what a rule writes for a new word, which is a name to the lexer."""
     return view.rules.names or view.lexer.name
-
-
-def _is_quoted(alternative: Alternative) -> bool:
-    """Return whether a token begins and ends with the same sign."""
-    match alternative.elements:
-        case (Literal(text=first), *_, Literal(text=last)):
-            return first[0] == last and not last.isalnum()
-    return False
-
-
-def _has_blank(element: Element) -> bool:
-    """Return whether an element is a set of characters with the blank."""
-    return isinstance(element, CharSet) and any(a <= ord(" ") <= b for a, b in element.ranges)

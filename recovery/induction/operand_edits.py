@@ -17,7 +17,7 @@ from grammar.notation.edits import (
     Replace,
     Widen,
 )
-from grammar.notation.model import Element, Group, Literal, Reference, Repeat
+from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
 from recovery.brackets import BRACKETS
 from recovery.forms.lists import split_at_commas
 from recovery.forms.symbols import CLOSERS, Symbol
@@ -64,10 +64,19 @@ class OperandEdits:
                 breadth = RULE_SYMBOLS * (len(self.at.rules.ladder) - level)
                 title = f"{text} between operands"
                 yield InferredStep(title, edits, tuple(members), breadth=breadth)
+        between = {
+            e.text
+            for rule in self.at.rules.ladder
+            for _, operator in self._levels(rule)
+            for e in walk(operator)
+            if isinstance(e, Literal)
+        }
         for text, members in prefix.items():
             for rule in self._prefixed or filter(None, [self._operands]):
                 edits = (*self.forms.reserving(text), AddAlternative(rule, f"{text} {rule}"))
-                yield InferredStep(f"{text} ahead of an operand", edits, tuple(members))
+                title = f"{text} ahead of an operand"
+                is_known = text.strip("'") in between  # a sign that operands have already
+                yield InferredStep(title, edits, tuple(members), is_known=is_known)
 
     def _note_operator(
         self, number: int, infix: dict[str, list[int]], prefix: dict[str, list[int]]

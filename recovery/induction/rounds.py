@@ -43,10 +43,10 @@ from recovery.induction.inferred_keywords import InferredKeywords, names_read
 from recovery.induction.language import CorpusFile, Language
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.list_lengths import bounded_lists
-from recovery.induction.literals import split_literals
+from recovery.induction.literals import spaced_literals, split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names, with_operands
 from recovery.induction.objections import EditReview
-from recovery.induction.open_classes import OPENINGS, is_open
+from recovery.induction.open_classes import OPENINGS, rare_words
 from recovery.induction.shown_files import Failures, ShownFiles, reading
 from recovery.induction.steps import (
     AcceptedStep,
@@ -64,8 +64,12 @@ from recovery.proposals.edit_site import LinePattern
 from recovery.proposals.unknown_tokens import unknown_tokens
 from recovery.survey.failing_line import source_lines
 from recovery.tuning import (
+    ACCEPTED_SHARE,
     ADVANCED_WORTH,
     BLOCK_FILES,
+    DAMAGED_SHARE,
+    DRAWN_NEGATIVES,
+    DRAWN_SEED,
     FEW_FILES,
     FOLD_FILES,
     LEAST_FILES_ALONE,
@@ -83,6 +87,13 @@ from recovery.tuning import (
 #: once at the end what may be new elsewhere.
 _Step = Literal["inner", "outer", "fold", "open"]
 *_STEPS, _END = get_args(_Step)
+
+#: Origins and files that have to show an edit: with no file a single line is enough. That is so for
+#: as long as more files fail than can be damaged.
+_LINE = (1, 0)
+
+#: Why edits are refused that may have more evidence later, or need less.
+_RARE = _ONE_ORIGIN, _FEW_LINES = "only one origin shows it", "too few lines of one file show it"
 
 #: Edits whose place another edit of the same rule may move.
 _Placed = Insert | Widen | MakeOptional | Replace
@@ -114,7 +125,7 @@ class Induction:
         self.shown = ShownFiles(shown)
         self.held = held
         self.negatives = negatives
-        self._reserved_in = (language or Language()).reserved_in
+        self._language = language or Language()
         self.least_origins = min(SEVERAL_ORIGINS, len({o for f in shown for o in f.origins}))
         self.is_finished = False
         self._corpus: CorpusLines | None = None
@@ -126,13 +137,14 @@ class Induction:
         self._held_read = Reading(0, 0, 0)
         self._had = {grammar.sha256}
         self._explained: set[LinePattern] = set()  # lines that known forms may grow to read
+        self._waiting: set[LinePattern] = set()  # lines that wait for more evidence on operands
 
-    def rounds(self, most: int = 60) -> Iterator[Round]:
+    def rounds(self, most: int = 80) -> Iterator[Round]:
         """Up to ``most`` rounds; ``is_finished`` once nothing more is worth taking."""
-        # what recurs in one origin only comes later, and last what recurs in one file only
+        # what recurs in one origin only comes later, then what recurs in one file only, last a line
         trusts = dict.fromkeys([(self.least_origins, LEAST_FILES_ALONE), (1, LEAST_FILES_ALONE)])
-        stages = [(step, least) for least in (*trusts, (1, 1)) for step in _STEPS]
-        stages.append((_END, (1, 1)))
+        stages = [(step, least) for least in (*trusts, (1, 1), _LINE) for step in _STEPS]
+        stages.append((_END, _LINE))
         place = 0
         for _ in range(most):
             step, least = stages[place]
@@ -153,12 +165,14 @@ class Induction:
             found = zip(self.shown.files, failures, strict=True)
             good = (file.text for file, failed in found if not failed)
             texts = sorted(good, key=len)[:FOLD_FILES]
-            self._review = EditReview(recognizer, rejected, self._reserved_in, texts)
+            self._review = EditReview(recognizer, rejected, self._language.reserved_in, texts)
         review = self._review
         if step == "fold":
-            taken, refused = self._folded(review, failures, is_last=least == (1, 1))
+            taken, refused = self._folded(review, failures, is_last=least == _LINE)
         elif step == "open":
             taken, refused = self._opened(review)
+        elif least == _LINE and sum(map(bool, failures)) <= DAMAGED_SHARE * len(failures):
+            taken, refused = [], []  # so few files may be damaged
         else:
             taken, refused = self._inferred(review, finder, failures, least, inner=step == "inner")
         grammar = apply(self.grammar, joined(taken))
@@ -217,7 +231,7 @@ class Induction:
                 mended = frozenset(found.lines)
             else:
                 gain, mended = _line_gain(trial, found, table)
-            if gain:
+            if gain and not {table.patterns[n] for n in mended} <= self._waiting:
                 callers = at.profile.callers
                 rules = [r for r in changed_rules(edits) if r in callers]
                 breadth = found.breadth + sum(map(_size, edits))
@@ -233,6 +247,7 @@ class Induction:
         explained |= self._explained  # of the round before, under the same grammar
         self._explained = explained if inner else set()
         taken, refused = self._chosen(scored, table, review, least, explained)
+        self._waiting = set(_waiting(scored, refused, trial, table)) if inner else set()
         types = list(at.rules.type_rules)
         taken, lost = self.shown.kept(self.grammar, taken, self._names, types)
         if taken and not self.shown.gains(self.grammar, taken):  # two forms may undo each other
@@ -303,23 +318,28 @@ class Induction:
             evidence = table.evidence(lines)
             fixed = {e.rule for e in found.edits if isinstance(e, _Placed)}
             edits = tuple(e for e in found.edits if e not in reserved)
-            is_new = any(isinstance(e, AddToken) for e in found.edits)
+            is_new = _has_token(found.edits)
             is_inner = not changed_rules(found.edits).isdisjoint(operands)
-            is_wide = evidence.origins == 1 and is_inner and not is_new
+            is_wide = evidence.origins == 1 and is_inner and not is_new and not found.is_known
             # a slip in operands spoils all lines: they need more files, at the end different lines
             is_rare = evidence.files < (OPERAND_FILES if is_wide else LEAST_FILES_ALONE)
             is_odd = table.distinct(lines) < SEVERAL
             if evidence.origins < least[0] or (is_rare and least[1] > 1):
-                reason = "only one origin shows it"
+                reason = _ONE_ORIGIN
+            elif found.is_strict and table.has_rare_word(lines, edits):
+                reason = _FEW_LINES
+            elif is_rare and least == _LINE and table.are_misnamed(lines, review.recognizer):
+                reason = "a reserved word stands for a name"
             elif (
                 is_rare
+                and least != _LINE
                 and not found.is_known
                 and (
                     (is_wide and is_odd)
                     or not table.is_repeated(lines, edits, review.recognizer, explained)
                 )
             ):
-                reason = "too few lines of one file show it"
+                reason = _FEW_LINES
             elif least[1] > 1 and not is_new and table.have_one_word(lines):
                 reason = "a word that all lines have behind a name may be a keyword"
             elif fixed & changed:
@@ -327,8 +347,9 @@ class Induction:
             else:
                 scale = max(1, MANY_FILES / max(FEW_FILES, len(self.shown.files)))
                 worth = 0.0 if found.is_strict else gain * scale
-                # a slip hardly comes in several different lines
-                most = evidence.lines if is_rare and (is_wide or is_odd) else math.inf
+                # a slip hardly comes in several different lines, or reads as another kind of line
+                is_slip = is_rare and not found.is_known and (is_wide or is_odd)
+                most = evidence.lines if is_slip else math.inf
                 reason = review.objection(grammar, edits, found.edits, worth, most)
             if reason:
                 refused.append(RefusedStep(found.title, found.edits, gain, reason))
@@ -393,19 +414,32 @@ class Induction:
         return taken, [*lost, *refused.values()]
 
     def _opened(self, review: EditReview) -> tuple[list[AcceptedStep], list[RefusedStep]]:
-        """Return openings that accept no negative and lose no line, and others."""
+        """Return openings that accept hardly any negative and lose no line, and others."""
         grammar, lexer = self.grammar, review.recognizer.lexer
         corpus = CorpusLines(self.shown.files, lexer)
         operands = _operands(review.recognizer, corpus)
         taken: list[AcceptedStep] = []
         refused: list[RefusedStep] = []
-        for kind in OPENINGS if is_open(lexer, corpus) else ():
-            for found in kind(GrammarView(Recognizer(grammar), operands)):
+        rare = rare_words(lexer, corpus)
+        is_open = len(rare) >= SEVERAL
+        # what others are judged by is drawn evenly from all reasons, of which some are common
+        drawn = self._language.negatives(DRAWN_NEGATIVES, DRAWN_SEED) if is_open else ()
+        negatives = NegativeSet(drawn)
+        most = max(ACCEPTED_SHARE * len(negatives), len(negatives.accepted(review.recognizer)))
+        for kind in OPENINGS if is_open else ():
+            for found in kind(GrammarView(Recognizer(grammar), operands), rare):
                 wider = apply(grammar, found.edits)
                 if found.edits in self.struck:
                     continue
-                if accepted := review.newly_accepted(Recognizer(wider)):
+                widest = Recognizer(wider)
+                count = len(negatives.accepted(widest))
+                if accepted := review.newly_accepted(widest):
                     reason = f"accepts a program that must be rejected: {accepted[0].reason}"
+                elif count > most:
+                    reason = f"{count} programs that must be rejected would be accepted"
+                else:
+                    reason = ""
+                if reason:
                     refused.append(RefusedStep(found.title, found.edits, 0.0, reason))
                 else:
                     taken.append(AcceptedStep(found.title, found.edits))
@@ -460,7 +494,9 @@ class Induction:
         enough = least[0], min(SEVERAL_FILES, len(self.shown.files))
         for unknown in unknown_tokens(lines, recognizer.lexer, self.grammar.by_name):
             added: tuple[Edit, ...] = (AddRule(self.grammar.rules[-1].name, unknown.rule),)
-            if unknown.is_value and (values := OperandRules(recognizer).values):
+            if spaced := spaced_literals(self.grammar, unknown.seen) if unknown.is_value else ():
+                added = spaced
+            elif unknown.is_value and (values := OperandRules(recognizer).values):
                 added += (AddAlternative(values, unknown.name),)
             title = f"{unknown.seen[0]} is a token"
             step = self._token_step(title, added, unknown.files, unknown.seen, enough)
@@ -523,6 +559,23 @@ def _size(edit: Edit) -> int:
     """Return the number of symbols that an edit writes; an unbounded part counts four times."""
     text = getattr(edit, "text", "")
     return len(text.split()) + UNBOUNDED_SYMBOLS * len(re.findall(r"[)\w][*+]", text))
+
+
+def _waiting(
+    scored: Sequence[_Scored],
+    refused: Sequence[RefusedStep],
+    trial: EditTrial,
+    table: FailingLines,
+) -> Iterator[LinePattern]:
+    """Yield the lines that edits without a new word would mend if they had more evidence."""
+    rare = {step.edits for step in refused if step.reason in _RARE}
+    for _, step, _ in scored:
+        if step.edits in rare and not _has_token(step.edits):
+            yield from (table.patterns[n] for n in trial.result(step.edits, step.lines).mended)
+
+
+def _has_token(edits: Sequence[Edit]) -> bool:
+    return any(isinstance(edit, AddToken) for edit in edits)
 
 
 def _led_by(word: str, failures: Sequence[Failure]) -> int:

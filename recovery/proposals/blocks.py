@@ -8,7 +8,7 @@ lines are only found right inside of such a block divide it.
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from grammar.parser.lexer import SKIPPED, Lexer
@@ -34,7 +34,8 @@ class BlockLines:
     """The lines of all blocks with the same words.
 
     ``middles`` are those that divide it, in their order, with how often they come: ``?``, ``+`` or
-    ``*``; ``has_body`` says whether other lines come before the first of them.
+    ``*``; ``has_body`` says whether other lines come before the first of them, ``is_spelt`` whether
+    its words are spelt as those of other blocks.
     """
 
     opener: str
@@ -44,6 +45,7 @@ class BlockLines:
     middles: dict[str, _Having] = field(default_factory=dict)
     often: dict[str, str] = field(default_factory=dict)
     has_body: bool = False
+    is_spelt: bool = False
 
     @property
     def words(self) -> frozenset[str]:
@@ -68,10 +70,12 @@ def find_blocks(
     files: Sequence[SourceFile],
     free: Iterable[str],
     least: tuple[int, int] = (tuning.BALANCED_ORIGINS, tuning.BALANCED_FILES),
+    spelt: Collection[tuple[str, str]] = (),
 ) -> list[BlockLines]:
     """The blocks that words open which the grammar has no use for, ``free``; the most found first.
 
-    The ``least`` are the origins and the files that have to have one.
+    The ``least`` are the origins and the files that have to have one; one file is enough for those
+    whose words are ``spelt`` alike.
 
     Of two words that might open or close a block the one wins that does in more files, then the
     one with more lines between.
@@ -85,17 +89,20 @@ def find_blocks(
     pairs = []
     for opener in words:
         for closer in words:
-            if opener == closer or not _is_pair(opener, closer, files, counts, having, least):
+            needed = (1, 1) if (opener, closer) in spelt else least
+            if opener == closer or not _is_pair(opener, closer, files, counts, having, needed):
                 continue
             places = {*having[opener], *having[closer]}
             inside = sum(_inside(opener, closer, files[n].lines) for n in places)
-            pairs.append((-len(places), -inside, opener, closer))
+            is_spelt = (opener, closer) in spelt
+            pairs.append((not is_spelt, -len(places), -inside, opener, closer))
     found: list[BlockLines] = []
     taken: set[str] = set()
-    for _, _, opener, closer in sorted(pairs):
+    for *_, opener, closer in sorted(pairs):
         if not taken.intersection((opener, closer)):
             block = _gathered(opener, closer, files, set(words) - taken)
             if block is not None:
+                block.is_spelt = (opener, closer) in spelt
                 taken |= block.words
                 found.append(block)
     return found

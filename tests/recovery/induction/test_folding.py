@@ -12,8 +12,16 @@ from grammar.notation.wellformed import problem
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from recovery.induction.folding import FOLDS, folds_of
-from recovery.induction.folds_of_declarations import heads, types
-from recovery.induction.folds_of_operands import any_operands
+from recovery.induction.folds_of_declarations import (
+    heads,
+    kinds,
+    lists_of_two,
+    modes,
+    types,
+    undeclared_elsewhere,
+    words_of_a_kind,
+)
+from recovery.induction.folds_of_operands import any_operands, behind_signs
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import InferredStep
 
@@ -103,6 +111,66 @@ def test_what_may_be_folded(folds: dict[str, InferredStep]) -> None:
         "one form for what follows a name in line",
         "'+' ahead of operands in primary",
     } == folds.keys()
+
+
+_KINDS = _GRAMMAR.replace(
+    _GRAMMAR[_GRAMMAR.index("line\n") : _GRAMMAR.index("later\n    :")],
+    """line
+    : kindWord NAME (',' NAME)*
+    | MOVE kind NAME
+    | AXIS NAME
+    | INT NAME '=' NUMBER
+    | MOVE DIM (kindWord NAME '=' (NUMBER | NAME) | FRAME NAME)
+    | INT NAME ':' FAST
+    | later
+    | other
+    ;
+
+other
+    : MOVE (kind NAME index | kind NAME ':' SLOW)
+    | TURN NAME (',' NAME)?
+    ;
+
+kindWord : INT | REAL ;
+
+""",
+).replace("INT : 'INT' ;", "INT : 'INT' ;\nAXIS : 'AXIS' ;\nFRAME : 'FRAME' ;")
+
+
+@pytest.mark.parametrize(
+    ("text", "accepted"),
+    [
+        ("REAL A = 1\n", True),
+        ("AXIS A, B\n", True),
+        ("MOVE AXIS A\n", True),
+        ("MOVE DIM FRAME A = 1\n", True),
+        ("FRAME A\n", True),
+        ("INT A = B\n", True),
+        ("TURN A, B, C\n", True),
+        ("INT A : SLOW\n", True),
+        ("REAL A[1]\n", True),
+        ("REAL A[1], B\n", False),
+        ("MOVE A[1]\n", False),
+        ("FAST A\n", False),
+        ("GO A\n", False),
+    ],
+)
+def test_what_stands_where_a_kind_does_is_of_the_kind(text: str, accepted: bool) -> None:
+    """Words ahead of declared names, operands and words behind a sign, lists of any length."""
+    grammar = read(_KINDS)
+    some = (words_of_a_kind, kinds, behind_signs, lists_of_two, modes, undeclared_elsewhere)
+    while fold := next((f for k in some for f in _of(k, grammar)), None):
+        grammar = apply(grammar, fold.edits)
+    assert (False, accepted) == (
+        Recognizer(read(_KINDS)).accepts(text),
+        Recognizer(grammar).accepts(text),
+    )
+
+
+def _of(
+    kind: Callable[[GrammarView], Iterator[InferredStep]], grammar: Grammar
+) -> Iterator[InferredStep]:
+    return (fold for fold in kind(GrammarView(Recognizer(grammar), ())) if fold.edits)
 
 
 def test_a_name_is_no_first_word() -> None:
@@ -391,6 +459,7 @@ def test_a_fold_reads_all_that_was_read(
     for text in (
         _GRAMMAR,
         _LIKE,
+        _KINDS,
         _declared(),
         _declared(_HEADS),
         _declared(_TYPES),

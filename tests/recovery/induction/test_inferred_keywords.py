@@ -49,6 +49,23 @@ def test_a_word_of_one_origin(toy: Grammar, least: int, found: bool) -> None:
     assert found == ("MOVE" in keywords.words)
 
 
+@pytest.mark.parametrize(("between", "found"), [("WITH", {"GLIDE", "WITH"}), ("", {"GLIDE"})])
+def test_names_beside_a_word(toy: Grammar, between: str, found: set[str]) -> None:
+    """Of two words side by side the one that explains more lines is the keyword."""
+    text = "".join(f"GLIDE P{n} {between} {n}\nX := P{n}\n" for n in range(4) for _ in "ab")
+    shown = [CorpusFile(f"a/{n}", f"{text}Y := {n}\n", frozenset("a")) for n in range(2)]
+    lexer = Recognizer(toy).lexer
+    assert found == InferredKeywords(CorpusLines(shown, lexer), lexer, {}, (), 1).words
+
+
+@pytest.mark.parametrize(("least_files", "found"), [(1, set()), (0, {"GLIDE"})])
+def test_a_word_of_a_single_line(toy: Grammar, least_files: int, found: set[str]) -> None:
+    """It is a keyword where no second file is asked for."""
+    lexer = Recognizer(toy).lexer
+    corpus = CorpusLines([CorpusFile("a", "GLIDE P 1\n", frozenset("a"))], lexer)
+    assert found == InferredKeywords(corpus, lexer, {}, (), 1, least_files).words - {"P"}
+
+
 def test_a_sign_behind_a_keyword(toy: Grammar) -> None:
     """A word with a sign behind it is one where two operands of the line are side by side."""
     files = {o: f"LINK * {o} 1\nLABEL * {o}\n" for o in "abc"}

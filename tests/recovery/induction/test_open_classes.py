@@ -10,7 +10,7 @@ from grammar.parser.recognizer import Recognizer
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.language import CorpusFile
-from recovery.induction.open_classes import OPENINGS, is_open
+from recovery.induction.open_classes import OPENINGS, open_choices, rare_words
 from recovery.induction.rounds import Induction
 from recovery.negatives.negatives import Negative, NegativeSet
 
@@ -60,12 +60,15 @@ NEWLINE : '\\n' ;
 SPACE : ' '+ -> skip ;
 """
 
+#: A word of a single origin, which says that more may stand in its place.
+_RARE = frozenset({"SLOW"})
+
 
 def _opened(text: str) -> Grammar:
     """Return a grammar with all that can be opened in it."""
     grammar = read(text)
     for kind in OPENINGS:
-        for step in kind(GrammarView(Recognizer(grammar), ())):
+        for step in kind(GrammarView(Recognizer(grammar), ()), _RARE):
             grammar = apply(grammar, step.edits)
     return grammar
 
@@ -121,19 +124,23 @@ def test_two_words_are_few() -> None:
 @pytest.mark.parametrize(
     ("texts", "expected"),
     [
-        (["GO A FAST\nTURN A\n", "SAY '1'\n"], True),
-        (["GO A FAST\nTURN A\n", "SAY '1'\nTURN A\n"], True),
-        (["GO A FAST\nTURN A\n", "GO A\nTURN A\nSAY '1'\n"], False),
-        (["GO A FAST\nTURN A\n"], False),
+        (["GO A FAST\nTURN A\n", "SAY '1'\n"], {"GO", "FAST", "TURN", "SAY"}),
+        (["GO A FAST\nTURN A\n", "GO A\nTURN A\nSAY '1'\n"], {"FAST", "SAY"}),
+        (["GO A FAST\nTURN A\n"], set()),
     ],
 )
-def test_words_of_a_single_origin_say_how_open_a_vocabulary_is(
-    texts: list[str], expected: bool
-) -> None:
-    """It is open if three are of a single origin, where there is another one."""
+def test_words_of_a_single_origin_are_rare(texts: list[str], expected: set[str]) -> None:
+    """They say how many more there are, where there is another origin."""
     lexer = Recognizer(read(_GRAMMAR)).lexer
     files = [CorpusFile(f"{n}", text, frozenset({f"{n}"})) for n, text in enumerate(texts)]
-    assert expected == is_open(lexer, CorpusLines(files, lexer))
+    assert expected == rare_words(lexer, CorpusLines(files, lexer))
+
+
+def test_a_choice_without_a_rare_word_stays_closed() -> None:
+    """Words that several origins have each are all there are."""
+    view = GrammarView(Recognizer(read(_GRAMMAR)), ())
+    assert [] == list(open_choices(view, {"GO"}))
+    assert len(list(open_choices(view, {"FAST"}))) == 1
 
 
 @pytest.mark.parametrize(
@@ -150,7 +157,8 @@ def test_a_growth_ends_with_it(negative: str, is_struck: bool, expected: list[in
     texts = ["GO A FAST\nTURN B, C\n", "SAY '1'\nMOVE A\nGO B SLOW\n"]  # GO alone is of both
     files = [CorpusFile(f"{n}", text, frozenset({f"{n}"})) for n, text in enumerate(texts)]
     grammar = read(_GRAMMAR)
-    wanted = [step for kind in OPENINGS for step in kind(GrammarView(Recognizer(grammar), ()))]
+    view = GrammarView(Recognizer(grammar), ())
+    wanted = [step for kind in OPENINGS for step in kind(view, _RARE)]
     rejected = NegativeSet([Negative(None, negative, "it is none", "parse", line=1)])
     struck = [wanted[0].edits] if is_struck else ()
     induction = Induction(grammar, files, (), rejected, struck=struck)

@@ -210,6 +210,17 @@ def test_one_file_shows_what_it_has_often(
     assert accepted == Recognizer(_grown(toy, files).grammar).accepts(f"{word} D 7\n")
 
 
+@pytest.mark.parametrize(("others", "accepted"), [(10, True), (30, False)])
+def test_one_line_shows_enough_where_few_files_are_read(
+    toy: Grammar, others: int, accepted: bool
+) -> None:
+    """Of many files that are read one more may be damaged."""
+    odd = CorpusFile("one", "GLIDE 7 TO A\nGLIDE + 8 = A\n", frozenset({"one"}))
+    halts = (CorpusFile(f"{n}", "HALT\n" * n, frozenset({f"{n}"})) for n in range(1, others))
+    grown = Recognizer(_grown(toy, (odd, *halts)).grammar)
+    assert accepted == grown.accepts("GLIDE 9 TO B\n")
+
+
 @pytest.mark.parametrize(("inside", "accepted"), [("HALT", False), ("7", True), ("", True)])
 def test_a_word_for_a_name(toy: Grammar, inside: str, accepted: bool) -> None:
     """That a line of one file has a reserved word where a name stands tells nothing.
@@ -751,12 +762,13 @@ def test_brackets_behind_names_are_of_operands(toy: Grammar) -> None:
 
 
 def test_operands_of_one_origin(toy: Grammar) -> None:
-    """What may be an operand everywhere needs more than two files of one origin."""
+    """What may be an operand everywhere needs more than two files of one origin among many."""
     texts = [f"{n} := -{n}\n" for n in "ABCDE"]
     start = _with(toy, "PLUS :", "MINUS : '-' ;\nPLUS :")
     for count in (2, 5):
         files = [CorpusFile(f"o/{n}", t, frozenset("o")) for n, t in enumerate(texts[:count])]
-        files.append(CorpusFile("p/p", "HALT\n", frozenset("p")))
+        halts = ("HALT\n" * n for n in range(1, 100))
+        files += (CorpusFile(f"p/{n}", text, frozenset("p")) for n, text in enumerate(halts))
         grown = _grown(start, tuple(files)).grammar
         assert (count == 5) == Recognizer(grown).accepts("A := B * -C\n")
 

@@ -95,3 +95,18 @@ def test_a_text_in_quotes_is_a_value(toy: Grammar) -> None:
     for _ in induction.rounds():
         pass
     assert Recognizer(induction.grammar).accepts("F('X Y', 1 + 'Z')\n")
+
+
+@pytest.mark.parametrize("text", ["'1 01'", "'A'"])
+def test_blanks_within_a_known_token(toy: Grammar, text: str) -> None:
+    """A text that a token reads but for its blanks is one of that token, not of a new one."""
+    values = toy.text.replace("    : NUMBER\n", "    : NUMBER\n    | BITS\n", 1)
+    start = read(f"{values}\nBITS : '\\'' [01]+ '\\'' ;\n")
+    files = [CorpusFile(o, f"{o} := {text}\n", frozenset({o})) for o in "ABC"]
+    induction = Induction(start, files, (), NegativeSet(()))
+    for _ in induction.rounds():
+        pass
+    grown = Recognizer(induction.grammar)
+    assert [True, text != "'A'", text == "'A'"] == [
+        grown.accepts(f"X := {one}\n") for one in (text, "'1 1'", "'B'")
+    ]
