@@ -184,7 +184,7 @@ _BLOCKS: dict[type[ast.Node], str] = {
 
 
 def _end(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    if routine.node.result is None:
+    if routine.node.result is None or context.is_cut(routine):
         return
     ways = flow_graph(routine.node, lambda switch: _is_exhaustive(context, switch))
     if ways.end in ways.reached():

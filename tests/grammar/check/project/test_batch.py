@@ -311,3 +311,10 @@ def test_arrays_may_be_parameters_of_a_head_that_cannot_be_read(tmp_path: Path) 
     assert ["the array D needs a size for each dimension"] == [
         one.message for one in found if one.code == "KSS2086"
     ]
+
+
+def test_a_function_that_is_cut_off_may_have_its_return_behind(tmp_path: Path) -> None:
+    """That the file ends is one finding."""
+    text = "DEFFCT INT F()\n  INT N\n  N = 1\n  IF N == ("
+    found = check(lay(tmp_path, F__src=text)).diagnostics
+    assert ["KRL001"] == [one.code for one in found if one.severity != "note"]
