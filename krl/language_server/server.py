@@ -76,7 +76,8 @@ class _Handlers:
     def __init__(self, server: LanguageServer) -> None:
         self._server = server
         self._project = OpenProject()
-        self._open: set[str] = set()
+        #: The URIs of open files by path, as the editor writes them.
+        self._open: dict[str, str] = {}
         self._is_read = False
         self._is_graded = False
         self._catching_up: asyncio.Task[None] | None = None
@@ -140,9 +141,15 @@ class _Handlers:
         self._publish()
 
     def opened(self, given: lsp.DidOpenTextDocumentParams) -> None:
-        """Use the editor's text of a file instead of the text on disk."""
-        path = path_of(given.text_document.uri)
-        self._open.add(path)
+        """Use the editor's text of a file instead of the text on disk.
+
+        Documents that are no files, such as older versions of one, belong to no project.
+        """
+        uri = given.text_document.uri
+        if to_fs_path(uri) is None:
+            return
+        path = path_of(uri)
+        self._open[path] = uri
         self._project.change(path, given.text_document.text)
         self._project.changed()  # an editor need not watch the settings
         self._publish()
@@ -150,16 +157,19 @@ class _Handlers:
     def changed(self, given: lsp.DidChangeTextDocumentParams) -> None:
         """Use the new text of a file."""
         document = self._server.workspace.get_text_document(given.text_document.uri)
-        self._project.change(path_of(document.uri), document.source)
-        self._publish()
+        path = path_of(document.uri)
+        if path in self._open:
+            self._project.change(path, document.source)
+            self._publish()
 
     def closed(self, given: lsp.DidCloseTextDocumentParams) -> None:
         """Use the text on disk again."""
         path = path_of(given.text_document.uri)
-        self._open.discard(path)
-        self._project.reload(path)
-        self._tell(given.text_document.uri, [])
-        self._publish()
+        uri = self._open.pop(path, None)
+        if uri is not None:
+            self._project.reload(path)
+            self._tell(uri, [])
+            self._publish()
 
     def changed_on_disk(self, given: lsp.DidChangeWatchedFilesParams) -> None:
         """Read the files that changed outside the editor."""
@@ -196,10 +206,9 @@ class _Handlers:
             self._tell_open()
 
     def _tell_open(self) -> None:
-        for path in sorted(self._open):
+        for path, uri in sorted(self._open.items()):
             looked = self._project.look(path)
-            uri = from_fs_path(path)
-            if looked is not None and uri is not None:
+            if looked is not None:
                 self._tell(
                     uri, [protocol.diagnostic(looked.source, one) for one in looked.diagnostics]
                 )

@@ -69,6 +69,7 @@ class _Heard:
     places: dict[str, tuple[str, int, int]] = field(default_factory=dict)
     symbols: list[tuple[str, list[str]]] = field(default_factory=list)
     set_out: str = ""
+    files: set[str] = field(default_factory=set)
     more: dict[str, Any] = field(default_factory=dict)
 
 
@@ -87,8 +88,13 @@ async def _session(editor: Any, folder: Path, heard: _Heard) -> None:
         )
     )
     editor.initialized(lsp.InitializedParams())
-    item = lsp.TextDocumentItem(uri=uri, language_id="krl", version=1, text=PROGRAM)
-    editor.text_document_did_open(lsp.DidOpenTextDocumentParams(text_document=item))
+    for one, text in (
+        (f"git:{folder.as_posix()}/Cell.src?HEAD", PROGRAM),
+        (f"{folder.as_uri()}/(2).src", "DEF Two()\n  HALT\nEND\n"),
+        (uri, PROGRAM),
+    ):
+        item = lsp.TextDocumentItem(uri=one, language_id="krl", version=1, text=text)
+        editor.text_document_did_open(lsp.DidOpenTextDocumentParams(text_document=item))
     heard.before = [
         (one.range.start.line, one.range.start.character, one.code)
         for one in await editor.diagnostics("Cell.src", bool)
@@ -125,6 +131,7 @@ async def _session(editor: Any, folder: Path, heard: _Heard) -> None:
     await editor.diagnostics("Cell.src", lambda found: all(one.code != "KRL101" for one in found))
     heard.after = [one for one in editor.found["Cell.src"] if one.code == "KRL101"]
     heard.more = await _asked(editor, uri)
+    heard.files = {*editor.found}
     await editor.shutdown_async(None)
     editor.exit(None)
     await editor.stop()
@@ -185,6 +192,11 @@ def test_findings_come_while_one_types(heard: _Heard) -> None:
     """A name that is declared nowhere is told; declaring it in the text takes the finding away."""
     assert [(6, 2)] == [place[:2] for place in heard.before]
     assert [] == heard.after
+
+
+def test_findings_are_those_of_files(heard: _Heard) -> None:
+    """Each file has them under the URI that the editor uses; what is no file has none."""
+    assert {"(2).src", "Cell.src"} == heard.files
 
 
 def test_hover_shows_rule_and_source(heard: _Heard) -> None:
