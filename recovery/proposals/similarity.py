@@ -10,6 +10,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from difflib import SequenceMatcher
 from functools import cached_property
+from typing import NamedTuple
 
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat, Rule
 from recovery import tuning
@@ -19,68 +20,92 @@ from recovery.proposals.grammar_profile import GrammarProfile
 _NAMES = re.compile(r"\w+")
 
 
+class _Alternatives(NamedTuple):
+    """The alternatives of a rule: the elements of each, the classes of these, their symbols."""
+
+    written: list[list[str]]
+    classes: list[list[str]]
+    names: list[list[str]]
+
+
 class Similarity:
     """Compares alternatives under one grammar."""
 
     def __init__(self, profile: GrammarProfile) -> None:
         self.profile = profile
         self.vocabulary = profile.vocabulary
-        self._classes: dict[str, list[list[str]]] = {}  # of the symbols of each alternative
-        self._written: dict[str, list[list[str]]] = {}  # the elements of each
-        self._names: dict[str, list[list[str]]] = {}  # the symbols themselves
+        self._known: dict[str, _Alternatives] = {}
         self._leading_words: dict[str, frozenset[str]] = {}
 
     def dissimilarity(self, rule: str, symbols: Sequence[str]) -> int:
         """Return a penalty for an alternative of a rule; negative if the rule has a similar one.
 
-        Alternatives are compared as sequences of symbol classes, where all keywords are one class,
-        and by the symbols themselves. A rule with many alternatives takes more of them easily, a
-        rule with one does not.
+        A rule with many alternatives takes more of them easily, a rule with one does not.
         """
-        if rule not in self._classes:
-            found = self.profile.grammar.by_name[rule]
-            written = [list(map(found.source_of, a.elements)) for a in found.alternatives]
-            self._classes[rule] = [list(map(self._class_of, some)) for some in written]
-            self._written[rule] = written
-            self._names[rule] = [_NAMES.findall(" ".join(some)) for some in written]
-        known = self._classes[rule]
-        new = [self._class_of(symbol) for symbol in symbols]
         if self.profile.is_single_reference(rule):
             return 0
-        kinds = {_kind(old[0]) for old in known if old}
         if len(symbols) == 1 and self._is_one_of_words(rule):
             return (
                 -tuning.STRONGEST_SIMILARITY_STEPS
-                if _kind(new[0]) in kinds
+                if self._begins_alike(rule, symbols)
                 else -tuning.SIMILARITY_STEPS
             )
         if self.gathers(rule):
-            if not self._is_single(symbols):
-                return (
-                    tuning.STRONG_SIMILARITY_STEPS
-                    if self._is_known_by(rule, symbols[0])
-                    else tuning.LOOSE_GATHERING_COST
-                )
-            if not self.profile.is_free(symbols[0]):
-                # it has its place already, beside some of these alternatives or others
-                return -tuning.SIMILARITY_STEPS - self._shared(rule, symbols[0])
-            return (
-                -tuning.STRONGEST_SIMILARITY_STEPS
-                if _kind(new[0]) in kinds
-                else -tuning.STRONG_SIMILARITY_STEPS
-            )
+            return self._gathered_steps(rule, symbols)
         leads = self._leads(rule)
         if not leads.isdisjoint(choices(symbols[0])):
             # what goes on alike is another form of the same, which an edit of that shows better
-            alike = any(some[1:2] == list(symbols[1:2]) for some in self._written[rule])
+            alike = any(some[1:2] == list(symbols[1:2]) for some in self._read(rule).written)
             return 0 if alike else -tuning.STRONG_SIMILARITY_STEPS
         if len(leads) == 1 and "" not in leads:
             return tuning.STRONG_SIMILARITY_STEPS
-        best = _likeness(new, known)
-        if best >= tuning.SIMILAR_RATIO and len(known) > 1:
-            same = _likeness(_NAMES.findall(" ".join(symbols)), self._names[rule])
+        return self._form_steps(rule, symbols)
+
+    def _gathered_steps(self, rule: str, symbols: Sequence[str]) -> int:
+        """Return the penalty for an alternative of a rule that gathers single rules."""
+        if not self._is_single(symbols):
+            return (
+                tuning.STRONG_SIMILARITY_STEPS
+                if self._is_known_by(rule, symbols[0])
+                else tuning.LOOSE_GATHERING_COST
+            )
+        if not self.profile.is_free(symbols[0]):
+            # it has its place already, beside some of these alternatives or others
+            return -tuning.SIMILARITY_STEPS - self._shared(rule, symbols[0])
+        return (
+            -tuning.STRONGEST_SIMILARITY_STEPS
+            if self._begins_alike(rule, symbols)
+            else -tuning.STRONG_SIMILARITY_STEPS
+        )
+
+    def _form_steps(self, rule: str, symbols: Sequence[str]) -> int:
+        """Return the penalty for an alternative by the most similar one of the rule.
+
+        They are compared as sequences of symbol classes, where all keywords are one class, and by
+        the symbols themselves.
+        """
+        known = self._read(rule)
+        best = _likeness(list(map(self._class_of, symbols)), known.classes)
+        if best >= tuning.SIMILAR_RATIO and len(known.classes) > 1:
+            same = _likeness(_NAMES.findall(" ".join(symbols)), known.names)
             return -round(tuning.SIMILARITY_STEPS * (best + same))
-        return tuning.NEW_FORM_COST + max(0, tuning.MANY_FORMS - len(known))
+        return tuning.NEW_FORM_COST + max(0, tuning.MANY_FORMS - len(known.classes))
+
+    def _begins_alike(self, rule: str, symbols: Sequence[str]) -> bool:
+        """Return whether an alternative of a rule begins with the same class of symbol."""
+        kinds = {_kind(classes[0]) for classes in self._read(rule).classes if classes}
+        return _kind(self._class_of(symbols[0])) in kinds
+
+    def _read(self, rule: str) -> _Alternatives:
+        """Return the alternatives of a rule as they are compared."""
+        known = self._known.get(rule)
+        if known is None:
+            found = self.profile.grammar.by_name[rule]
+            written = [list(map(found.source_of, a.elements)) for a in found.alternatives]
+            classes = [list(map(self._class_of, some)) for some in written]
+            names = [_NAMES.findall(" ".join(some)) for some in written]
+            known = self._known[rule] = _Alternatives(written, classes, names)
+        return known
 
     def _shared(self, rule: str, symbol: str) -> int:
         """Return how many alternatives a rule shares with one that has the symbol as another."""
