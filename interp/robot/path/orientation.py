@@ -108,10 +108,7 @@ def turning(start: Array, end: Array, extent: float = 1.0) -> Turning:
 
 def about(axis: Array, radians: npt.NDArray[np.float64]) -> Array:
     """Return rotations ``(n, 3, 3)`` about a unit axis by angles ``(n,)``."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sine, versine = np.sin(radians), 2.0 * np.sin(radians / 2.0) ** 2
-    turned: Array = (
-        np.eye(3) + sine[:, None, None] * cross + versine[:, None, None] * (cross @ cross)
-    )
+    from scipy.spatial.transform import Rotation
+
+    turned: Array = Rotation.from_rotvec(radians[:, None] * axis).as_matrix()
     return turned
