@@ -210,7 +210,8 @@ def _chosen_machine(
     program: CheckedProgram, starts: Sequence[Routine], setup: RunSetup
 ) -> tuple[ChosenMachine, bool]:
     """Return the arm of a run, and whether the run must tolerate what the project lacks."""
-    lacks_files = setup.is_tolerant and bool(program.used_stand_ins(*starts))
+    used = program.used_stand_ins(*starts)
+    lacks_files = setup.is_tolerant and any(one.origin != "argument" for one in used)
     given = setup.robot_file.machine if setup.robot_file is not None else setup.machine
     if given is not None:
         return ChosenMachine(given), lacks_files

@@ -205,17 +205,17 @@ class CheckedProgram:
                 is_type = isinstance(answer, Found) and answer.symbol.kind in _TYPES
                 is_declared = isinstance(answer, Found) and _is_project_file(answer.module)
                 places.setdefault((name.key, is_type, is_declared), (unit, name))
-        used = [
-            (one, *places[key])
-            for one in self.stand_ins
-            if (key := (one.name.upper(), one.kind == "type", one.origin == "unset")) in places
-        ]
-        return tuple(
-            one
-            if unit.module.folder == FOLDER
-            else replace(one, path=unit.module.path, line=unit.line(name))
-            for one, unit, name in used
-        )
+        used = []
+        for one in self.stand_ins:
+            key = one.name.upper(), one.kind == "type", one.origin == "unset"
+            if one.origin == "argument":  # a parameter of the routine that a run begins with
+                used.append(one)
+            elif key in places:
+                unit, name = places[key]
+                is_own = unit.module.folder != FOLDER
+                line = unit.line(name)
+                used.append(replace(one, path=unit.module.path, line=line) if is_own else one)
+        return tuple(used)
 
     def reached(self, *routines: Routine) -> tuple[Unit, ...]:
         """Return the files with these routines, and all files that they use, with their data lists.

@@ -311,6 +311,17 @@ def test_first_motion_is_not_complete(run: Run, first: str) -> None:
     assert f"robot program: {said}" == run(f"{first}\n")[2].splitlines()[-1]
 
 
+def test_arguments_of_the_first_routine_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What a routine with parameters begins with is listed, also where no file is missing."""
+    file = tmp_path / "lift.src"
+    file.write_text("DEF lift ( N :IN, M :IN )\nINT N, M\nWAIT SEC N\nEND\n", encoding="utf-8")
+    assert 0 == main(["run", str(file)])
+    said = "stand-ins: as arguments of the first routine N (lift.src:1), M (lift.src:1)"
+    assert said == capsys.readouterr().err.splitlines()[0]
+
+
 def test_no_time(run: Run) -> None:
     """A run of no time ends at once."""
     _, out, _ = run("WAIT SEC 1\n", "--until", "0")
