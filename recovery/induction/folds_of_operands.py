@@ -147,6 +147,7 @@ def _is_led(view: GrammarView, ahead: Sequence[Element]) -> bool:
 
 def behind_signs(view: GrammarView) -> Iterator[InferredStep]:
     """Yield the same operands behind a sign such as ``=`` wherever the lines of a rule have it."""
+    named = view.rules.matcher.rules_for((view.lexer.name_kind,))
     for rule in view.grammar.parser_rules:
         if rule.name in view.rules.recursive:
             continue
@@ -160,7 +161,8 @@ def behind_signs(view: GrammarView) -> Iterator[InferredStep]:
             if len(texts) < 2 or not all(_is_operand(view, o) for _, o in operands):
                 continue
             widest = view.rules.widest
-            if widest and all(_is_any(view, o) for _, o in operands):
+            read = {name for _, o in operands for name in _any_of(view, o) or ("",)}
+            if widest and "" not in read and read & named:  # values alone are constants
                 form: str | None = widest
             else:
                 shapes = [s for _, o in operands for s in samples_of(view.rules, [o])]
@@ -174,14 +176,16 @@ def behind_signs(view: GrammarView) -> Iterator[InferredStep]:
             yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
 
 
-def _is_any(view: GrammarView, element: Element) -> bool:
-    """Return whether the rule of all operands may be what an element is."""
+def _any_of(view: GrammarView, element: Element) -> frozenset[str]:
+    """Return the rules of which an element is a choice, if the rule of all operands may be each."""
     match element:
         case Group(alternatives=alternatives):
-            return all(_is_any(view, e) for a in alternatives for e in a.elements)
+            parts = [_any_of(view, e) for a in alternatives for e in a.elements]
+            return frozenset[str]().union(*parts) if all(parts) else frozenset()
         case Reference(name=name, is_token=False):
-            return view.rules.includes(view.rules.widest or "", name)
-    return False
+            is_any = view.rules.includes(view.rules.widest or "", name)
+            return frozenset({name} if is_any else ())
+    return frozenset()
 
 
 def _is_operand(view: GrammarView, element: Element) -> bool:
@@ -189,10 +193,9 @@ def _is_operand(view: GrammarView, element: Element) -> bool:
     match element:
         case Group(alternatives=alternatives):
             return all([_is_operand(view, e) for e in a.elements] == [True] for a in alternatives)
-        case Reference(name=name, is_token=True):
-            return view.lexer.has_value(view.lexer.kind_of[name])
-        case Reference(name=name):
-            return view.is_name(element) or not view.words(element)
+        case Reference():
+            lexer = view.lexer
+            return all(lexer.has_value(lexer.kind_of[word]) for word in view.words(element))
     return False
 
 

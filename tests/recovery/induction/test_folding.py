@@ -489,6 +489,23 @@ def test_any_operand_in_place_of_variables_and_values() -> None:
         assert not Recognizer(after).accepts("TURN 1\n")
 
 
+@pytest.mark.parametrize(
+    ("seen", "accepted"), [("number", [False, False]), ("variable", [True, True])]
+)
+def test_what_a_sign_has_behind_it(seen: str, accepted: list[bool]) -> None:
+    """Variables beside other operands make it any operand, constants of two kinds do not."""
+    lines = f"line : SET NAME '=' text | TURN NAME '=' {seen} | WAIT sum |"
+    rules = _values().replace("line : SET NAME '=' sum |", lines)
+    text = rules.replace("one : number", "text : TEXT ;\none : text | number")
+    grammar = read(text.replace("NAME : [A-Z]+", "TEXT : '\"' [A-Z]* '\"' ;\nNAME : [A-Z]+"))
+    recognizer = Recognizer(grammar)
+    operands = [(recognizer.lexer.kind_of[name],) for name in ("NAME", "NUMBER", "TEXT")]
+    for fold in behind_signs(GrammarView(recognizer, operands)):
+        grammar = apply(grammar, fold.edits)
+    texts = ("SET A = B\n", "TURN A = 1 + 1\n", 'TURN A = "B"\n')
+    assert [*accepted, True] == [Recognizer(grammar).accepts(text) for text in texts]
+
+
 def _values() -> str:
     rules = """
 line : SET NAME '=' sum | WAIT (number | variable)? | MOVE target | TURN (NAME | variable) ;
