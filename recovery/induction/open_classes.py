@@ -78,13 +78,16 @@ def open_statements(view: GrammarView, _rare: Set[str]) -> Iterator[InferredStep
 def open_words(view: GrammarView, _rare: Set[str]) -> Iterator[InferredStep]:
     """Yield any word alone on a line, where several words are."""
     alone: dict[str, set[str]] = defaultdict(set)
-    for rule in view.grammar.parser_rules:
+    is_list = view.profile.vocabulary.is_set_of_words
+    for rule in (r for r in view.grammar.parser_rules if not is_list(r.name)):
         single = (a.elements[0] for a in rule.alternatives if len(a.elements) == 1)
         for words in map(view.words, single):
-            alone[rule.name] |= words if words - {view.lexer.name} <= view.reserved else set()
+            alone[rule.name] |= words if words <= view.reserved else frozenset()
     name = max(alone, key=lambda rule: len(alone[rule]), default="")
-    is_host = name and len(alone[name]) >= SEVERAL and name not in view.rules.recursive
-    if is_host and view.lexer.name not in alone[name]:
+    host = view.grammar.by_name.get(name)
+    if host is None or len(alone[name]) < SEVERAL or name in view.rules.recursive:
+        return
+    if _name(view) not in map(host.source_of, host.alternatives):
         yield InferredStep(f"any word as {name}", (AddAlternative(name, _name(view)),), ())
 
 

@@ -109,6 +109,19 @@ def test_what_is_open_is_opened_once(opened: Grammar) -> None:
     assert opened == _opened(opened.text)
 
 
+@pytest.mark.parametrize(("words", "accepted"), [("HOLD REST STOP", True), ("HOLD REST", False)])
+def test_a_word_alone(words: str, accepted: bool) -> None:
+    """Any word is a line where three are, once, whatever words are names too."""
+    lines = "".join(f"    | {word}\n" for word in words.split())
+    tokens = "".join(f"{word} : '{word}' ;\n" for word in [*words.split(), "FAR"])
+    text = _GRAMMAR.replace("    | MOVE expression\n", f"    | MOVE expression\n{lines}")
+    text = text.replace("name : NAME ;", "name : NAME | FAR ;").replace(
+        "GO : 'GO'", f"{tokens}GO : 'GO'"
+    )
+    opened = _opened(text)
+    assert (accepted, opened) == (Recognizer(opened).accepts("WAIT\n"), _opened(opened.text))
+
+
 def test_blanks_need_an_example() -> None:
     """Without blanks between other quotes there are none."""
     text = _GRAMMAR.replace('~["\\n]*', "[A-Z]*")
