@@ -39,6 +39,8 @@ from support.parallel.progress import Progress, no_progress
 _TASK_BYTES = 1 << 20
 _TASK_FILES = 64
 _SMALL = 8 << 20
+# The states of a recogniser in a process; one with more is replaced, so that memory is bounded.
+_MOST_STATES = 20_000
 
 
 @dataclass(frozen=True)
@@ -139,6 +141,10 @@ def _finder(grammar_text: str) -> FailureFinder:
 def _read_contents(grammar_text: str, contents: tuple[bytes, ...]) -> list[Kept]:
     """Return what is found in each content: why it is skipped, or its failures and names."""
     finder = _finder(grammar_text)
+    if finder.recognizer.size > _MOST_STATES:
+        finder.recognizer.release()
+        _finder.cache_clear()
+        finder = _finder(grammar_text)
     results: list[Kept] = []
     for data in contents:
         source = decode(data)
