@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from interp.controller.state.trace import TraceEvent
     from interp.program.load import CheckedProgram
     from interp.session import RunResult, RunSetup
+    from interp.standins.completion import StandIn
 
 _MOST_LISTED = 3
 _START_REFUSED = 1443
@@ -44,7 +45,7 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
         yield f"{event.task} program: {event.place}: {event.fields['text']}"
     yield from _seen(done)
     if not done.controller.points and setup.routine is None:
-        yield from _elsewhere(program)
+        yield from _elsewhere(program, used)
     if done.outcome.ending == "time" and setup.patience <= done.outcome.time < setup.until:
         stood = f"{setup.patience / 1e6:g} s"
         yield f"the arm has stood still for {stood}; --until S goes on for longer"
@@ -105,10 +106,11 @@ def refused(done: "RunResult") -> Iterator["TraceEvent"]:
             yield event
 
 
-def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
+def _elsewhere(program: "CheckedProgram", used: "Sequence[StandIn]") -> Iterator[str]:
     """Yield a hint where the motions are, if the run had none.
 
-    They may be in other routines of the file, or in a block that was not entered.
+    They may be in a block that was not entered, in other routines of the file, or in routines that
+    no file has, for which stand-ins that do nothing were ``used``.
     """
     from grammar.check.analysis.context import placed
     from grammar.syntax import ast
@@ -132,10 +134,17 @@ def _elsewhere(program: "CheckedProgram") -> Iterator[str]:
             where = f"{unit.module.path.rpartition('/')[2]}:{line}"
             yield f"no motion; the first one is inside {where}: {unit.source.line(line).strip()}"
         return
+    missing = [one.name for one in used if one.kind == "routine" and one.origin != "library"]
     if moving:
-        more = f" and {len(moving) - _MOST_LISTED} more" if len(moving) > _MOST_LISTED else ""
-        names = ", ".join(moving[:_MOST_LISTED])
-        yield f"no motion in {first.name}; others can be selected with --routine: {names}{more}"
+        names = _listed(moving)
+        yield f"no motion in {first.name}; others can be selected with --routine: {names}"
+    elif missing:
+        yield f"no motion; routines that no file has may make some: {_listed(missing)}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - _MOST_LISTED} more" if len(names) > _MOST_LISTED else ""
+    return ", ".join(names[:_MOST_LISTED]) + more
 
 
 def _seen(done: "RunResult") -> Iterator[str]:

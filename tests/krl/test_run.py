@@ -645,6 +645,15 @@ def test_what_the_first_motion_depends_on_is_named(run: Run) -> None:
     assert (0, "no motion; the first one is inside main.src:2: IF $IN[2] THEN\n") == (status, err)
 
 
+def test_missing_routines_that_may_move_are_named(run: Run) -> None:
+    """Where no routine at hand moves the arm, those that no file has are named."""
+    status, _, err = run("go(1)\nback()\n")
+    assert (0, "no motion; routines that no file has may make some: go, back") == (
+        status,
+        err.splitlines()[-1],
+    )
+
+
 def test_a_folder_is_no_program(run: Run, tmp_path: Path) -> None:
     """What could be run in a folder or an archive is named in one line."""
     (tmp_path / "cell").mkdir()
