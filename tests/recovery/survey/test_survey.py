@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
+from recovery.survey import survey as survey_module
 from recovery.survey.survey import Survey, survey, survey_texts
 from recovery.survey.surveyed_files import SurveyedFile
 from support.files.discovery import IngestError, discover
@@ -60,6 +61,19 @@ def record_of(found: Survey) -> object:
         (f.places, f.size, [(replace(x, form=0), found.forms[x.form]) for x in f.failures])
         for f in found.files
     ]
+
+
+def test_a_recogniser_that_has_grown_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process gives the same with a recogniser for each task, and keeps none that has grown."""
+    text, contents = PRELIMINARY.text, (GOOD, BAD)
+    survey_module._finder.cache_clear()
+    kept = survey_module._read_contents(text, contents)
+    known = survey_module._finder(text)
+    assert kept == survey_module._read_contents(text, contents)
+    assert known is survey_module._finder(text)
+    monkeypatch.setattr(survey_module, "_MOST_STATES", 0)
+    assert kept == survey_module._read_contents(text, contents)
+    assert known is not survey_module._finder(text)
 
 
 def only(found: Survey) -> SurveyedFile:
