@@ -29,9 +29,7 @@ from recovery.tuning import RULE_SYMBOLS
 
 def tails(view: GrammarView) -> Iterator[InferredStep]:
     """Yield one form for what follows a declared name, if alternatives of a rule differ in it."""
-    for rule in view.grammar.parser_rules:
-        if rule.name in view.rules.recursive:
-            continue
+    for rule in view.line_rules:
         found: list[tuple[int, int, Sequence[Element]]] = []
         for number in range(1, len(rule.alternatives) + 1):
             elements = view.line(rule.name, number)
@@ -83,10 +81,9 @@ def brackets(view: GrammarView) -> Iterator[InferredStep]:
 
 def lists_of_two(view: GrammarView) -> Iterator[InferredStep]:
     """Yield any number of items where one and two are read, and no third: these are lists."""
-    for rule in view.grammar.parser_rules:
-        is_line = rule.name not in view.rules.recursive
+    for rule in view.line_rules:
         edits: list[Edit] = []
-        for address, sequence in sequences(rule) if is_line else ():
+        for address, sequence in sequences(rule):
             is_bounded = any(sign_of(e) == "','" for e in sequence.elements[:1])
             for place, element in enumerate(() if is_bounded else sequence.elements):
                 match element:
@@ -103,8 +100,8 @@ def lists_of_two(view: GrammarView) -> Iterator[InferredStep]:
 def modes(view: GrammarView) -> Iterator[InferredStep]:
     """Yield one choice for the words that follow a name or type and the same sign."""
     found: dict[str, list[tuple[Rule, Address, frozenset[str]]]] = defaultdict(list)
-    for rule in view.grammar.parser_rules:
-        for address, sequence in sequences(rule) if rule.name not in view.rules.recursive else ():
+    for rule in view.line_rules:
+        for address, sequence in sequences(rule):
             for place, (ahead, sign, word) in enumerate(_threes(sequence.elements), 3):
                 words = view.words(word)
                 is_mode = bool(words) and words <= view.reserved

@@ -118,8 +118,8 @@ def variables(view: GrammarView) -> Iterator[InferredStep]:
     values = {lexer.names[k] for k in kinds}.union(*(read[k] for k in kinds)) - of_names
     values -= {lexer.name, *view.reserved}
     reading = view.rules.including(variable)
-    for rule in view.grammar.parser_rules:
-        if rule.name in view.rules.recursive or rule.name in values:
+    for rule in view.line_rules:
+        if rule.name in values:
             continue
         heads = {view.head(alternative.elements) for alternative in rule.alternatives}
         is_statement = len(heads) == 1 and not heads & {"", view.kind}
@@ -148,9 +148,7 @@ def _is_led(view: GrammarView, ahead: Sequence[Element]) -> bool:
 def behind_signs(view: GrammarView) -> Iterator[InferredStep]:
     """Yield the same operands behind a sign such as ``=`` wherever the lines of a rule have it."""
     named = view.rules.matcher.rules_for((view.lexer.name_kind,))
-    for rule in view.grammar.parser_rules:
-        if rule.name in view.rules.recursive:
-            continue
+    for rule in view.line_rules:
         found: dict[str, list[tuple[Address, Element]]] = defaultdict(list)
         for address, sequence in sequences(rule):
             for place, (sign, operand) in enumerate(pairwise(sequence.elements), 2):
@@ -202,9 +200,7 @@ def _is_operand(view: GrammarView, element: Element) -> bool:
 def any_operands(view: GrammarView) -> Iterator[InferredStep]:
     """Yield any operand in place of a choice of variables and values."""
     widest = view.rules.widest or ""
-    for rule in view.grammar.parser_rules:
-        if rule.name in view.rules.recursive:
-            continue
+    for rule in view.line_rules:
         edits: list[Edit] = []
         if _are_variables_and_values(view, rule.alternatives):
             edits.append(Replace(rule.name, (1, 1), widest))

@@ -39,6 +39,11 @@ class GrammarView:
         self.kind = f"{next(iter(self.rules.type_rules), '')}Word"
 
     @cached_property
+    def line_rules(self) -> Sequence[Rule]:
+        """The parser rules except those of expressions."""
+        return [r for r in self.grammar.parser_rules if r.name not in self.rules.recursive]
+
+    @cached_property
     def reserved(self) -> frozenset[str]:
         """The reserved words that are neither names nor words of a kind."""
         words = {w for w, kind in self.lexer.kind_of.items() if self.lexer.is_keyword(kind)}
@@ -73,9 +78,8 @@ class GrammarView:
         return sorted(self._families(), key=lambda f: (-len(f[2]), f[:2]))
 
     def _families(self) -> Iterator[tuple[str, str, list[int]]]:
-        for rule in self.grammar.parser_rules:
-            is_choice = all(len(a.elements) == 1 for a in rule.alternatives)
-            if is_choice or rule.name in self.rules.recursive:
+        for rule in self.line_rules:
+            if all(len(a.elements) == 1 for a in rule.alternatives):
                 continue
             found: dict[str, list[int]] = defaultdict(list)
             for number in range(1, len(rule.alternatives) + 1):

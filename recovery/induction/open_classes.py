@@ -39,9 +39,8 @@ def open_choices(view: GrammarView, rare: Set[str]) -> Iterator[InferredStep]:
     A word between operands says more.
     """
     found: dict[frozenset[str], list[Replace]] = defaultdict(list)
-    for rule in view.grammar.parser_rules:
-        is_line = rule.name not in view.rules.recursive
-        for address, sequence in sequences(rule) if is_line else ():
+    for rule in view.line_rules:
+        for address, sequence in sequences(rule):
             for place, element in enumerate(sequence.elements, 1):
                 often = element.operator if isinstance(element, Repeat) else ""
                 group = element.item if isinstance(element, Repeat) else element
