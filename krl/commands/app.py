@@ -7,6 +7,8 @@ from typing import Annotated, Any, Final
 import typer
 from typer.core import TyperGroup
 
+from krl.terminal.options import Commands
+
 #: The location of each command, which is a function or an app with subcommands, and its short help.
 _COMMANDS: Final = {
     "demo": ("krl.commands.demo:demo", "Run an example and open its page with the moving arm."),
@@ -45,7 +47,7 @@ class _Group(TyperGroup):
 
 def app(*words: str) -> typer.Typer:
     """Return the command line; only the command named by the first word is imported, for speed."""
-    made = typer.Typer(
+    made = Commands(
         cls=_Group,
         context_settings={"help_option_names": ["-h", "--help"]},
         pretty_exceptions_enable=False,

@@ -24,19 +24,18 @@ _ImageOption = Annotated[
 def compile_file(
     file: FileArgument,
     output: _ImageOption = None,
-    strict: Annotated[
-        bool, typer.Option("--strict", help="Write nothing if the checker finds an error.")
-    ] = False,
-    native: Annotated[
-        bool,
-        typer.Option("--native", help="Add native code, for krl run --executor compiled."),
-    ] = False,
+    strict: bool = False,
+    native: bool = False,
 ) -> int:
     """Compile a program with its whole project to bytecode, verify it, and write its image.
 
     The image can start with any routine of the file without parameters, or of a submit program.
     Causes that would end a run are reported on stderr with exit status 1, such as a missing routine
     or a variable of unknown type; the image is still written.
+
+    Options:
+        strict: Write nothing if the checker finds an error.
+        native: Add native code, for krl run --executor compiled.
     """
     from interp.values.faults import LinkError
 
@@ -77,10 +76,14 @@ def _native_code(image: bytes) -> Iterator[str]:
 
 
 def assemble_file(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A program as text.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE")],
     output: _ImageOption = None,
 ) -> None:
-    """Assemble a program of the bytecode machine, verify it, and write its image."""
+    """Assemble a program of the bytecode machine, verify it, and write its image.
+
+    Options:
+        file: A program as text.
+    """
     from interp.bytecode.assembly.assembler import AssemblyError, assemble
     from interp.bytecode.verifier.verify import VerificationError, verify
 
@@ -94,12 +97,15 @@ def assemble_file(
 
 
 def disassemble_image(
-    image: Annotated[Path, typer.Argument(metavar="IMAGE", help="An image.")],
-    steps: Annotated[
-        bool, typer.Option("--steps", help="Print the register code of the machine in C instead.")
-    ] = False,
+    image: Annotated[Path, typer.Argument(metavar="IMAGE")],
+    steps: bool = False,
 ) -> None:
-    """Print an image as the text that `krl asm` makes it from."""
+    """Print an image as the text that `krl asm` makes it from.
+
+    Options:
+        image: An image.
+        steps: Print the register code of the machine in C instead.
+    """
     from interp.bytecode.assembly.disassembler import disassemble
     from interp.bytecode.image.codec import ImageError
     from interp.bytecode.image.reader import read_image

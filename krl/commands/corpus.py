@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
+from krl.terminal.options import Commands
 from krl.terminal.text_table import print_columns
 from reports.rendering.number_format import counted
 
@@ -21,7 +22,7 @@ CORPUS = Path("corpus")
 _SYNTHETIC = Path("reports", "out", "synth")
 _UNITS = {"": 1, "k": 1_000, "m": 1_000_000, "g": 1_000_000_000}
 
-app = typer.Typer(help="List the programs of the corpus, fetch the public ones, make others.")
+app = Commands(help="List the programs of the corpus, fetch the public ones, make others.")
 
 
 @app.command("list")
@@ -47,21 +48,17 @@ def show() -> int:
 
 @app.command("fetch")
 def fetch(
-    mirror: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR",
-            help="Use git mirrors of the repositories in this folder (OWNER/NAME, OWNER__NAME "
-            "or OWNER+NAME), not the network.",
-        ),
-    ] = None,
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where to write, one folder per repository.")
-    ] = CORPUS / "open",
+    mirror: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
+    out: Annotated[Path, typer.Option(metavar="DIR")] = CORPUS / "open",
 ) -> int:
     """Fetch the KRL files of the public repositories, each verified by its checksum.
 
     The files belong to other people. Exit status 1 if a file could not be fetched.
+
+    Options:
+        mirror: Use git mirrors of the repositories in this folder (OWNER/NAME, OWNER__NAME or
+            OWNER+NAME), not the network.
+        out: Where to write, one folder per repository.
     """
     from krl.terminal.progress import progress_bar
     from recovery.corpus import public
@@ -96,27 +93,22 @@ def fetch(
 
 @app.command("synth")
 def synth(
-    paths: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            metavar="[PATH]...",
-            help="Programs to copy: files, folders, .zip archives; default: corpus/programs.",
-        ),
-    ] = None,
-    size: Annotated[
-        str, typer.Option(metavar="BYTES", help="Total size: 500000, 300kB, 10MB, 1.5GB.")
-    ] = "1MB",
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the programs.")] = 1,
-    out: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Where to write; default: a folder in reports/out/synth."),
-    ] = None,
+    paths: Annotated[list[Path] | None, typer.Argument(metavar="[PATH]...")] = None,
+    size: Annotated[str, typer.Option(metavar="BYTES")] = "1MB",
+    seed: int = 1,
+    out: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
 ) -> int:
     """Write programs in whole cells, for tests of scale.
 
     Copies of the programs, with other names and numbers and some routines left out, and a tenth
     random programs; where there is no corpus/ and none is named, all are random. The same programs,
     size and seed give the same files everywhere. They are not evidence for a grammar.
+
+    Options:
+        paths: Programs to copy: files, folders, .zip archives; default: corpus/programs.
+        size: Total size: 500000, 300kB, 10MB, 1.5GB.
+        seed: Seed of the programs.
+        out: Where to write; default: a folder in reports/out/synth.
     """
     from krl.terminal.progress import progress_bar
     from recovery.bench.copies import write_corpus

@@ -20,30 +20,22 @@ if TYPE_CHECKING:
 
 @with_run_options
 def debug(
-    file: Annotated[
-        Path | None,
-        typer.Argument(metavar="[FILE]", help="The program; with --dap the client can name it."),
-    ] = None,
+    file: Annotated[Path | None, typer.Argument(metavar="[FILE]")] = None,
     *,
     options: RunOptions,
-    dap: Annotated[
-        bool, typer.Option("--dap", help="Serve an editor: the Debug Adapter Protocol over stdio.")
-    ] = False,
-    port: Annotated[
-        int | None,
-        typer.Option(
-            min=0,
-            max=65535,
-            metavar="N",
-            help="With --dap: use this port of 127.0.0.1; 0 picks one.",
-        ),
-    ] = None,
+    dap: bool = False,
+    port: Annotated[int | None, typer.Option(min=0, max=65535)] = None,
 ) -> int:
     """Run a program under a debugger: breakpoints, steps forwards and back, variables, the arm.
 
     Commands are read from a prompt, or from standard input if it is not a terminal; `help` lists
     them. Exit status 1 if the run ended with a fault or a command from a file was wrong. See
     docs/debugging.md.
+
+    Options:
+        file: The program; with --dap the client can name it.
+        dap: Serve an editor: the Debug Adapter Protocol over stdio.
+        port: With --dap: use this port of 127.0.0.1; 0 picks one.
     """
     if dap:
         from krl.debug_adapter.server import serve

@@ -19,17 +19,17 @@ _PLACES = (
 
 
 def demo(
-    html: Annotated[Path, typer.Option(metavar="FILE", help="The page to write.")] = Path(
-        "krl-demo.html"
-    ),
-    opened: Annotated[
-        bool, typer.Option("--open/--no-open", help="Open the page in the browser.")
-    ] = True,
+    html: Path = Path("krl-demo.html"),
+    opened: Annotated[bool, typer.Option("--open/--no-open")] = True,
 ) -> int:
     """Run an example that finds parts by touch and carries them, and open its page.
 
     A six-axis arm in MuJoCo, with inputs from a script; takes a few seconds. The page shows the arm
     in motion, the line being executed, signals and axes over time.
+
+    Options:
+        html: The page to write.
+        opened: Open the page in the browser.
     """
     folder = next((place for place in _PLACES if place.is_dir()), None)
     if folder is None:

@@ -29,26 +29,25 @@ class Format(StrEnum):
 
 
 def diff(
-    old: Annotated[Path, typer.Argument(metavar="OLD", help="A file, folder or .zip archive.")],
-    new: Annotated[Path | None, typer.Argument(metavar="[NEW]", help="The newer version.")] = None,
-    format_: Annotated[
-        Format, typer.Option("--format", help="How to write the differences.")
-    ] = Format.TEXT,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Also write the record to FILE.")
-    ] = None,
-    html: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Write a page to this folder, or to FILE.html."),
-    ] = None,
-    textconv: Annotated[
-        bool, typer.Option("--textconv", help="Print OLD without comments and layout, for git.")
-    ] = False,
+    old: Annotated[Path, typer.Argument(metavar="OLD")],
+    new: Annotated[Path | None, typer.Argument(metavar="[NEW]")] = None,
+    format_: Format = Format.TEXT,
+    json_file: Annotated[Path | None, typer.Option("--json")] = None,
+    html: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
+    textconv: bool = False,
 ) -> int:
     """Compare two versions of programs: routines, then taught points and data.
 
     Headers, comments, folds, layout and letter case are ignored. Exit status 1 if there are
     differences.
+
+    Options:
+        old: A file, folder or .zip archive.
+        new: The newer version.
+        format_: How to write the differences.
+        json_file: Also write the record to FILE.
+        html: Write a page to this folder, or to FILE.html.
+        textconv: Print OLD without comments and layout, for git.
     """
     from grammar.comparison.backups import compare
 

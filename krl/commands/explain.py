@@ -12,12 +12,13 @@ if TYPE_CHECKING:
 
 
 def explain(
-    code: Annotated[
-        str | None,
-        typer.Argument(metavar="[CODE]", help="KSS2296 or 2296; without it all codes are listed."),
-    ] = None,
+    code: Annotated[str | None, typer.Argument(metavar="[CODE]")] = None,
 ) -> int:
-    """Explain a code of `krl check`: what is wrong, why, and how to fix it."""
+    """Explain a code of `krl check`: what is wrong, why, and how to fix it.
+
+    Options:
+        code: KSS2296 or 2296; without it all codes are listed.
+    """
     from grammar.diagnostics.codes import by_code, by_slug
     from grammar.diagnostics.did_you_mean import did_you_mean
     from grammar.diagnostics.explanations import explanation

@@ -30,22 +30,18 @@ class _Outcome(Enum):
 
 
 def format_programs(
-    paths: Annotated[
-        list[Path],
-        typer.Argument(
-            metavar="PATH...",
-            help="Files, folders, .zip archives of controllers; archives are only checked.",
-        ),
-    ],
-    check: Annotated[
-        bool, typer.Option("--check", help="Write nothing; list the files that would change.")
-    ] = False,
+    paths: Annotated[list[Path], typer.Argument(metavar="PATH...")],
+    check: bool = False,
 ) -> int:
     """Format programs: indentation, spaces, keywords in upper case.
 
     Comments, folds, headers, line breaks, line ends, encoding and the meaning of a program do not
     change. Exit status 1 if a file has syntax errors, which is then left alone, or if one would
     change but is not written: with --check, and in archives.
+
+    Options:
+        paths: Files, folders, .zip archives of controllers; archives are only checked.
+        check: Write nothing; list the files that would change.
     """
     from support.files.discovery import IngestError, discover
 

@@ -19,20 +19,10 @@ _SHOWN = 5
 
 
 def fuzz(
-    programs: Annotated[int, typer.Option(min=1, metavar="N", help="Number of programs.")] = 1_000,
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the programs.")] = 1,
-    minutes: Annotated[
-        float | None,
-        typer.Option(min=0.1, metavar="N", help="Start no more programs after N minutes."),
-    ] = None,
-    executor: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME",
-            help="tree, vm, native or compiled; repeatable; the first is the reference; "
-            "default: all but compiled.",
-        ),
-    ] = None,
+    programs: Annotated[int, typer.Option(min=1)] = 1_000,
+    seed: int = 1,
+    minutes: Annotated[float | None, typer.Option(min=0.1)] = None,
+    executor: Annotated[list[str] | None, typer.Option(metavar="NAME")] = None,
     json_file: JsonOption = None,
     jobs: JobsOption = None,
     scheduler: Annotated[str | None, scheduler_option("run the programs")] = None,
@@ -43,6 +33,13 @@ def fuzz(
     program on which two executors diverge is reduced as far as possible; exit status 1 if there is
     one. A program reaches a rule of KRL if it executes everything that all conformance cases of
     this rule, or of a clause of it, have in common.
+
+    Options:
+        programs: Number of programs.
+        seed: Seed of the programs.
+        minutes: Start no more programs after N minutes.
+        executor: tree, vm, native or compiled; repeatable; the first is the reference; default: all
+            but compiled.
     """
     from conformance.differential.campaign import fuzz as run
     from conformance.differential.campaign import record_of

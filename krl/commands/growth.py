@@ -30,17 +30,17 @@ _LEFT = 5
 
 def growth(
     paths: CorpusArgument = None,
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where index.html and growth.json go.")
-    ] = _DEFAULT_OUT,
+    out: Annotated[Path, typer.Option(metavar="DIR")] = _DEFAULT_OUT,
     json_file: JsonTooOption = None,
     jobs: JobsOrOneOption = None,
-    constructs: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="The ledger; default: that of the current grammar."),
-    ] = None,
+    constructs: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
 ) -> int:
-    """Replay the ledger over KRL source: parse rate and metrics of the grammar, step by step."""
+    """Replay the ledger over KRL source: parse rate and metrics of the grammar, step by step.
+
+    Options:
+        out: Where index.html and growth.json go.
+        constructs: The ledger; default: that of the current grammar.
+    """
     from grammar.notation.generate import GRAMMAR
     from recovery.growth.growth import growth as replayed
     from recovery.ledger.ledger import Ledger, preliminary_of, replay

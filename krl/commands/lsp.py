@@ -4,9 +4,7 @@ import contextlib
 import logging
 import os
 import sys
-from typing import Annotated, BinaryIO, cast
-
-import typer
+from typing import BinaryIO, cast
 
 from krl.errors import FINE, InputError
 from krl.extras import expected_extras
@@ -16,13 +14,14 @@ _LONGEST_LINE = 1_000
 
 
 def lsp(
-    verbose: Annotated[
-        bool, typer.Option("--verbose", help="Log requests and replies to stderr.")
-    ] = False,
+    verbose: bool = False,
 ) -> int:
     """Serve an editor over standard input and output: findings, hover, definitions, formatting.
 
     Speaks the Language Server Protocol; docs/editors.md explains the set-up of editors.
+
+    Options:
+        verbose: Log requests and replies to stderr.
     """
     logging.basicConfig(stream=sys.stderr, level=logging.INFO if verbose else logging.CRITICAL)
     with expected_extras():

@@ -16,27 +16,13 @@ _DEFAULT_HISTORY = Path("reports", "history.jsonl")
 
 
 def nightly(
-    paths: Annotated[
-        list[Path] | None,
-        typer.Argument(metavar="[PATH]...", help="Files and folders to survey; default: corpus/."),
-    ] = None,
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Parent of the dated folder.")
-    ] = _DEFAULT_OUT,
-    history: Annotated[
-        Path, typer.Option(metavar="FILE", help="The history; one line is appended.")
-    ] = _DEFAULT_HISTORY,
-    minutes: Annotated[float, typer.Option(min=1, metavar="N", help="Time limit of the run.")] = 60,
-    memory: Annotated[
-        int,
-        typer.Option(min=100, metavar="MB", help="Memory limit of each process, on Linux."),
-    ] = 8_000,
-    date: Annotated[
-        str | None, typer.Option(metavar="DATE", help="The name of the run; default: today.")
-    ] = None,
-    only: Annotated[
-        list[str] | None, typer.Option(metavar="STEP", help="Only this step; repeatable.")
-    ] = None,
+    paths: Annotated[list[Path] | None, typer.Argument(metavar="[PATH]...")] = None,
+    out: Annotated[Path, typer.Option(metavar="DIR")] = _DEFAULT_OUT,
+    history: Path = _DEFAULT_HISTORY,
+    minutes: Annotated[float, typer.Option(min=1)] = 60,
+    memory: Annotated[int, typer.Option(min=100, metavar="MB")] = 8_000,
+    date: Annotated[str | None, typer.Option(metavar="DATE")] = None,
+    only: Annotated[list[str] | None, typer.Option(metavar="STEP")] = None,
 ) -> int:
     """Run survey, growth, conformance, fuzzing and benches, and report what changed.
 
@@ -47,6 +33,15 @@ def nightly(
     status 1 if a step or a case fails, cases of the last run have vanished, a law is broken,
     executors diverge, or a bench is far worse than before: a share by 0.1, or a ratio by a factor
     of 2; also if no time was left for a step.
+
+    Options:
+        paths: Files and folders to survey; default: corpus/.
+        out: Parent of the dated folder.
+        history: The history; one line is appended.
+        minutes: Time limit of the run.
+        memory: Memory limit of each process, on Linux.
+        date: The name of the run; default: today.
+        only: Only this step; repeatable.
     """
     from krl.nightly.nightly_run import run_steps
     from krl.nightly.run_lock import alone

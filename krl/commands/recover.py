@@ -38,85 +38,42 @@ _DEFAULT_OUT = Path("reports", "out", "recover")
 
 def recover(
     paths: CorpusArgument = None,
-    grammar: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="The .g4 to parse with; default: the current grammar."),
-    ] = None,
-    out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where index.html and survey.json go.")
-    ] = _DEFAULT_OUT,
+    grammar: Path | None = None,
+    out: Annotated[Path, typer.Option(metavar="DIR")] = _DEFAULT_OUT,
     json_file: JsonTooOption = None,
     jobs: JobsOrOneOption = None,
     scheduler: Annotated[str | None, scheduler_option("read the files")] = None,
-    negatives: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR",
-            help="Invalid programs that proposals must still reject; default: corpus/negatives,"
-            " with --auto only generated ones.",
-        ),
-    ] = None,
-    start: Annotated[
-        bool,
-        typer.Option(
-            "--start/--no-start",
-            help="Also survey under the restrictive start, and list which constructs resolved its "
-            "clusters.",
-        ),
-    ] = True,
-    strict: Annotated[
-        bool, typer.Option("--strict", help="Exit with status 1 if a file does not parse.")
-    ] = False,
-    auto: Annotated[
-        bool,
-        typer.Option("--auto", help="Infer a grammar automatically, from preliminary.g4 or FILE."),
-    ] = False,
-    without: Annotated[
-        int,
-        typer.Option(
-            metavar="N",
-            min=0,
-            help="With --auto: start from the current grammar without N constructs, drawn by "
-            "--seed.",
-        ),
-    ] = 0,
-    hold_out: Annotated[
-        float | None,
-        typer.Option(
-            metavar="FRACTION",
-            help="With --auto: share of origins used only to measure; default: 0.",
-        ),
-    ] = None,
-    seed: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N", help="With --auto: seed of what is held out or removed; default: 1."
-        ),
-    ] = None,
-    target: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="With --auto: compare the result with this .g4."),
-    ] = None,
-    suffix: Annotated[
-        str,
-        typer.Option(
-            metavar=".EXT",
-            help="With --auto --grammar FILE: file name suffix of a language other than KRL.",
-        ),
-    ] = "",
-    resume: Annotated[
-        bool,
-        typer.Option(
-            "--resume",
-            help="With --auto: continue from the state in --out DIR, with its seed and origins.",
-        ),
-    ] = False,
-    strike: Annotated[
-        list[str] | None,
-        typer.Option(metavar="ID", help="With --auto: continue from --out DIR without this step."),
-    ] = None,
+    negatives: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
+    start: Annotated[bool, typer.Option("--start/--no-start")] = True,
+    strict: bool = False,
+    auto: bool = False,
+    without: Annotated[int, typer.Option(min=0)] = 0,
+    hold_out: Annotated[float | None, typer.Option(metavar="FRACTION")] = None,
+    seed: int | None = None,
+    target: Path | None = None,
+    suffix: Annotated[str, typer.Option(metavar=".EXT")] = "",
+    resume: bool = False,
+    strike: Annotated[list[str] | None, typer.Option(metavar="ID")] = None,
 ) -> int:
-    """Survey KRL source: list every parse failure, grouped by cause, and the files each blocks."""
+    """Survey KRL source: list every parse failure, grouped by cause, and the files each blocks.
+
+    Options:
+        grammar: The .g4 to parse with; default: the current grammar.
+        out: Where index.html and survey.json go.
+        negatives: Invalid programs that proposals must still reject; default: corpus/negatives,
+            with --auto only generated ones.
+        start: Also survey under the restrictive start, and list which constructs resolved its
+            clusters.
+        strict: Exit with status 1 if a file does not parse.
+        auto: Infer a grammar automatically, from preliminary.g4 or FILE.
+        without: With --auto: start from the current grammar without N constructs, drawn by --seed.
+        hold_out: With --auto: share of origins used only to measure; default: 0.
+        seed: With --auto: seed of what is held out or removed; default: 1.
+        target: With --auto: compare the result with this .g4.
+        suffix: With --auto --grammar FILE: file name suffix of a language other than KRL.
+        resume: With --auto: continue from the state in --out DIR, with its seed and origins.
+        strike: With --auto: continue from --out DIR without this step.
+    """
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.krl_grammar import krl_grammar

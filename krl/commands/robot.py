@@ -12,12 +12,13 @@ import typer
 from krl.errors import FINE, InputError
 from krl.extras import expected_extras
 from krl.running.arm_files import read_machine_file
+from krl.terminal.options import Commands
 
 if TYPE_CHECKING:
     from interp.robot.kinematics.kinematics import Kinematics
     from interp.values.poses import Pose
 
-app = typer.Typer(help="Ask what an arm does, by its machine data.")
+app = Commands(help="Ask what an arm does, by its machine data.")
 
 _COMPONENTS = "xyzabc"
 _DIGITS = 9  # of a degree; more would be noise
@@ -31,24 +32,10 @@ def _robot() -> None:
 
 @app.command("status-turn")
 def status_turn(
-    points: Annotated[
-        Path,
-        typer.Argument(
-            metavar="POINTS.json",
-            help='A list of {"id","x","y","z","a","b","c","s"} in mm and degrees. Each may have '
-            'a "tool" and a "base" of its own, and "t", which selects among whole turns of an '
-            "axis.",
-        ),
-    ],
-    machine: Annotated[
-        Path, typer.Option(metavar="FILE", help="The $machine.dat of the arm, from R1/Mada.")
-    ],
-    tool: Annotated[
-        str, typer.Option(metavar="X,Y,Z,A,B,C", help="Tool of points that have none.")
-    ] = "0,0,0,0,0,0",
-    base: Annotated[
-        str, typer.Option(metavar="X,Y,Z,A,B,C", help="Base of points that have none.")
-    ] = "0,0,0,0,0,0",
+    points: Annotated[Path, typer.Argument(metavar="POINTS.json")],
+    machine: Path,
+    tool: Annotated[str, typer.Option(metavar="X,Y,Z,A,B,C")] = "0,0,0,0,0,0",
+    base: Annotated[str, typer.Option(metavar="X,Y,Z,A,B,C")] = "0,0,0,0,0,0",
 ) -> int:
     """Print joint angles and Turn of taught points, for the solution that their Status names.
 
@@ -56,6 +43,13 @@ def status_turn(
     software limits. If an axis can reach the point in several whole turns, that of the point's Turn
     is taken ("agrees" says whether it fits), or without a Turn the one nearest to 0. Points out of
     reach have no joints, and "message" is that of the controller.
+
+    Options:
+        points: A list of {"id","x","y","z","a","b","c","s"} in mm and degrees. Each may have a
+            "tool" and a "base" of its own, and "t", which selects among whole turns of an axis.
+        machine: The $machine.dat of the arm, from R1/Mada.
+        tool: Tool of points that have none.
+        base: Base of points that have none.
     """
     default_tool, default_base = _listed("--tool", tool), _listed("--base", base)
     arm = _arm(machine)

@@ -45,35 +45,14 @@ def run(
     file: FileArgument,
     *,
     options: RunOptions,
-    trace: Annotated[
-        Path | None, typer.Option(metavar="FILE.jsonl", help="Write the trace to FILE.")
-    ] = None,
-    trace_level: Annotated[
-        Level, typer.Option(help="full also records every line and assignment.")
-    ] = Level.WORLD,
-    max_trace: Annotated[
-        int,
-        typer.Option(metavar="MB", min=1, help="End the trace at this size; the run goes on."),
-    ] = 1000,
-    path: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE.parquet", help="Write set-points; also .csv."),
-    ] = None,
-    html: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the page of the run.")
-    ] = None,
-    video: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE.mp4", help="Film the MuJoCo arm; also .gif and .webp."),
-    ] = None,
-    png: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE.png", help="Write a picture of the MuJoCo arm and its path."),
-    ] = None,
-    observations: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE.jsonl", help="Write contacts and excessive torques here."),
-    ] = None,
+    trace: Annotated[Path | None, typer.Option(metavar="FILE.jsonl")] = None,
+    trace_level: Level = Level.WORLD,
+    max_trace: Annotated[int, typer.Option(metavar="MB", min=1)] = 1000,
+    path: Annotated[Path | None, typer.Option(metavar="FILE.parquet")] = None,
+    html: Path | None = None,
+    video: Annotated[Path | None, typer.Option(metavar="FILE.mp4")] = None,
+    png: Annotated[Path | None, typer.Option(metavar="FILE.png")] = None,
+    observations: Annotated[Path | None, typer.Option(metavar="FILE.jsonl")] = None,
 ) -> int:
     """Run a program: advance run, motions, interrupts, triggers, submit, on a virtual clock.
 
@@ -82,6 +61,16 @@ def run(
     could not be read or failed and was skipped, or if the arm collided or exceeded a torque.
     Stand-ins replace what the project lacks, such as a routine behind an inline form, and are
     listed; statements that still fail, mostly motions, are skipped and listed.
+
+    Options:
+        trace: Write the trace to FILE.
+        trace_level: full also records every line and assignment.
+        max_trace: End the trace at this size; the run goes on.
+        path: Write set-points; also .csv.
+        html: Write the page of the run.
+        video: Film the MuJoCo arm; also .gif and .webp.
+        png: Write a picture of the MuJoCo arm and its path.
+        observations: Write contacts and excessive torques here.
     """
     needed = ["numpy"] * (html is not None) + ["PIL"] * (video is not None or png is not None)
     needed += ["imageio_ffmpeg"] * (video is not None and video.suffix.lower() == ".mp4")

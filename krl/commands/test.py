@@ -20,39 +20,30 @@ _PASSED, _FAILED, _NONE = 0, 1, 5
 
 
 def run_tests(
-    paths: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="[PATH]...", help="Test files and folders; default: the current folder."
-        ),
-    ] = None,
-    select: Annotated[
-        str | None,
-        typer.Option("-k", metavar="WORDS", help="Only tests with these words in their name."),
-    ] = None,
-    stop: Annotated[bool, typer.Option("-x", help="Stop at the first test that fails.")] = False,
-    processes: Annotated[
-        str | None, typer.Option("-n", metavar="N", help="Number of processes (pytest-xdist).")
-    ] = None,
-    update: Annotated[
-        bool, typer.Option("--update", help="Record the expected results of recorded tests again.")
-    ] = False,
+    paths: Annotated[list[str] | None, typer.Argument(metavar="[PATH]...")] = None,
+    select: Annotated[str | None, typer.Option("-k", metavar="WORDS")] = None,
+    stop: Annotated[bool, typer.Option("-x")] = False,
+    processes: Annotated[str | None, typer.Option("-n", metavar="N")] = None,
+    update: bool = False,
     executor: ExecutorOption = None,
-    junit: Annotated[
-        Path | None, typer.Option(metavar="FILE.xml", help="Write results as JUnit XML.")
-    ] = None,
-    cov_html: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Write a page of covered lines and branches."),
-    ] = None,
-    lcov: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write coverage for lcov.")
-    ] = None,
+    junit: Annotated[Path | None, typer.Option(metavar="FILE.xml")] = None,
+    cov_html: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
+    lcov: Path | None = None,
 ) -> int:
     """Run unit tests of robot programs: `test_*.toml` and `test_*.src` below the paths.
 
     Arguments after `--` are passed to pytest, which runs the tests; `pytest PATH` collects them
     too. Exit status 0 if all pass, 1 if one fails, 2 if a file cannot be used or there is no test.
+
+    Options:
+        paths: Test files and folders; default: the current folder.
+        select: Only tests with these words in their name.
+        stop: Stop at the first test that fails.
+        processes: Number of processes (pytest-xdist).
+        update: Record the expected results of recorded tests again.
+        junit: Write results as JUnit XML.
+        cov_html: Write a page of covered lines and branches.
+        lcov: Write coverage for lcov.
     """
     files = [Path(word.partition("::")[0]) for word in takewhile(_is_path, paths or ())]
     for file in files:

@@ -17,6 +17,7 @@ from krl.extras import ARM, expected_extras
 from krl.project_settings import settings_of
 from krl.running.arm_files import read_arm
 from krl.running.program_loading import load_program
+from krl.terminal.options import as_option, descriptions
 
 if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
@@ -73,85 +74,54 @@ class RunOptions:
     """The options of a run, from the command line or a client.
 
     `with_run_options` makes an option from each field.
+
+    Options:
+        routine: Where to start; default: the first routine.
+        robot: The arm that moves.
+        profile: The controller: kss8, kss5, or a .toml file. Default: that of krl.toml, or kss8.
+        io: Sets inputs at given times; auto fulfils waits and presses START and CONFIRM. Default:
+            auto in a terminal, else nothing.
+        submit: The submit program, a routine of the project; with --io auto its SPS by default.
+        machine: Use this arm, not the project's.
+        urdf: An arm of your own, as URDF.
+        mjcf: An arm of your own, as MJCF.
+        scene: Objects around the arm; contacts are reported.
+        motion: Plan motions as they arrive, or in batches.
+        max_time: Stop after S seconds of virtual time; default: 3600, with --io auto 600, or once
+            the arm has stood still for 20.
+        statements: Statements each program may execute before it counts as endless; default:
+            4000000, with the executor tree 150000.
+        strict: Do not run if the checker finds an error, and use no stand-ins.
     """
 
-    routine: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Where to start; default: the first routine.")
-    ] = None
+    routine: Annotated[str | None, typer.Option(metavar="NAME")] = None
     executor: ExecutorOption = None
-    robot: Annotated[Robot, typer.Option(help="The arm that moves.")] = Robot.NONE
-    profile: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME",
-            help="The controller: kss8, kss5, or a .toml file. Default: that of krl.toml, or kss8.",
-        ),
-    ] = None
-    io: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="SCRIPT",
-            help="Sets inputs at given times; auto fulfils waits and presses START and CONFIRM. "
-            "Default: auto in a terminal, else nothing.",
-        ),
-    ] = None
-    submit: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME",
-            help="The submit program, a routine of the project; with --io auto its SPS by default.",
-        ),
-    ] = None
-    machine: Annotated[
-        Path | None, typer.Option(metavar="$machine.dat", help="Use this arm, not the project's.")
-    ] = None
-    urdf: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="An arm of your own, as URDF.")
-    ] = None
-    mjcf: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="An arm of your own, as MJCF.")
-    ] = None
-    scene: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE.toml", help="Objects around the arm; contacts are reported."),
-    ] = None
-    motion: Annotated[Motion, typer.Option(help="Plan motions as they arrive, or in batches.")] = (
-        Motion.LOOKAHEAD
-    )
+    robot: Robot = Robot.NONE
+    profile: Annotated[str | None, typer.Option(metavar="NAME")] = None
+    io: Annotated[Path | None, typer.Option(metavar="SCRIPT")] = None
+    submit: Annotated[str | None, typer.Option(metavar="NAME")] = None
+    machine: Annotated[Path | None, typer.Option(metavar="$machine.dat")] = None
+    urdf: Path | None = None
+    mjcf: Path | None = None
+    scene: Annotated[Path | None, typer.Option(metavar="FILE.toml")] = None
+    motion: Motion = Motion.LOOKAHEAD
     max_time: Annotated[
-        float | None,
-        typer.Option(
-            "--max-time",
-            "--until",
-            min=0.0,
-            metavar="S",
-            help="Stop after S seconds of virtual time; default: 3600, with --io auto 600, or "
-            "once the arm has stood still for 20.",
-        ),
+        float | None, typer.Option("--max-time", "--until", min=0.0, metavar="S")
     ] = None
-    statements: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            max=2**31 - 1,
-            metavar="N",
-            help="Statements each program may execute before it counts as endless; default: "
-            "4000000, with the executor tree 150000.",
-        ),
-    ] = None
-    strict: Annotated[
-        bool,
-        typer.Option(
-            "--strict", help="Do not run if the checker finds an error, and use no stand-ins."
-        ),
-    ] = False
+    statements: Annotated[int | None, typer.Option(min=1, max=2**31 - 1)] = None
+    strict: bool = False
 
 
 def with_run_options(command: Callable[..., int]) -> Callable[..., int]:
     """Return ``command`` with an option for each field of `RunOptions` instead of ``options``."""
-    hints = get_type_hints(RunOptions, include_extras=True)
+    hints, (_, said) = get_type_hints(RunOptions, include_extras=True), descriptions(RunOptions)
     parameters = [
-        Parameter(one.name, Parameter.KEYWORD_ONLY, default=one.default, annotation=hints[one.name])
+        Parameter(
+            one.name,
+            Parameter.KEYWORD_ONLY,
+            default=one.default,
+            annotation=as_option(one.name, hints[one.name], said.get(one.name)),
+        )
         for one in fields(RunOptions)
     ]
     own = signature(command, eval_str=True)

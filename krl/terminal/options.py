@@ -1,9 +1,17 @@
-"""Options and arguments that several commands share, and what they mean if nothing is named."""
+"""Options of commands: how they are declared, those that several commands share, their defaults.
 
+A command declares an option by a parameter with its type, and describes it in the section
+``Options:`` of its docstring. `typer.Option` is only needed for more: limits, another name.
+"""
+
+import inspect
 import os
-from collections.abc import Iterable
+import re
+from collections.abc import Callable, Iterable, Mapping
+from copy import copy
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_args
 
 import typer
 
@@ -11,6 +19,10 @@ from krl.errors import InputError
 
 if TYPE_CHECKING:
     from recovery.negatives.negatives import Negative
+
+_DESCRIBED = re.compile(r"^    (\w+): (.*(?:\n     +.*)*)", re.MULTILINE)
+#: What help calls the value of an option that does not say it itself, by a part of its type.
+_METAVARS: Mapping[Any, str] = {int: "N", float: "N", Path: "FILE"}
 
 #: More processes would need more open files than most systems allow.
 _MOST_JOBS = 256
@@ -99,3 +111,54 @@ def negatives_or_ours(folder: Path | None = None) -> "tuple[Negative, ...]":
     from recovery.negatives.negatives import load
 
     return load(folder or _NEGATIVES) if folder or _NEGATIVES.is_dir() else ()
+
+
+class Commands(typer.Typer):
+    """A group of commands that describe their options in their docstrings."""
+
+    def command(self, name: str | None = None, **more: Any) -> Callable[..., Any]:
+        """Return a decorator that adds a command."""
+
+        def add(command: Callable[..., Any]) -> Callable[..., Any]:
+            """Add a command, and return it as it is."""
+            super(Commands, self).command(name, **more)(_with_options(command))
+            return command
+
+        return add
+
+
+def descriptions(documented: object) -> tuple[str, Mapping[str, str]]:
+    """Return a docstring without its section ``Options:``, and what that says of each option."""
+    text, _, listed = (inspect.getdoc(documented) or "").partition("\n\nOptions:\n")
+    return text, {name: " ".join(said.split()) for name, said in _DESCRIBED.findall(listed)}
+
+
+def as_option(name: str, annotation: Any, said: str | None) -> Any:
+    """Return the annotation of a parameter as typer needs it for an option with this help."""
+    kind, *given = get_args(annotation) if hasattr(annotation, "__metadata__") else (annotation,)
+    info = copy(given[0]) if given else typer.Option()
+    info.help = said or info.help
+    if isinstance(info, typer.models.OptionInfo):
+        if info.default is ...:  # where typer keeps the first name; a bool gets no second one
+            info.default = f"--{name.rstrip('_').replace('_', '-')}"
+        parts = (kind, *get_args(kind))
+        info.metavar = info.metavar or next(filter(None, map(_METAVARS.get, parts)), None)
+    return Annotated[kind, info]
+
+
+def _with_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a command whose parameters are options, with the help that its docstring gives."""
+    text, said = descriptions(command)
+    own = inspect.signature(command, eval_str=True)
+
+    @wraps(command)
+    def called(*words: Any, **given: Any) -> Any:
+        return command(*words, **given)
+
+    called.__doc__ = text
+    parameters = [
+        one.replace(annotation=as_option(one.name, one.annotation, said.get(one.name)))
+        for one in own.parameters.values()
+    ]
+    vars(called)["__signature__"] = own.replace(parameters=parameters)
+    return called

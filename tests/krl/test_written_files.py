@@ -1,9 +1,10 @@
 """Whatever a command writes is in two tables: that it repeats is tried, and strange names in it."""
 
 import sys
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
+from inspect import signature
 from pathlib import Path
-from typing import get_args, get_type_hints
+from typing import get_args
 
 import pytest
 import typer
@@ -50,8 +51,9 @@ NOTHING_STRANGE = {
 }
 
 
-def _commands(of: typer.Typer, words: str = "") -> Iterator[tuple[str, object]]:
+def _commands(of: typer.Typer, words: str = "") -> Iterator[tuple[str, Callable[..., object]]]:
     for command in of.registered_commands:
+        assert command.callback is not None
         yield f"{words}{command.name}", command.callback
     for group in of.registered_groups:
         if group.typer_instance is not None:
@@ -62,8 +64,8 @@ def _written() -> list[tuple[str, str]]:
     """Each option that names a file or folder to be written, with its command."""
     found = []
     for command, function in _commands(app()):
-        for name, hint in get_type_hints(function, include_extras=True).items():
-            kind, *more = get_args(hint) or (hint,)
+        for name, one in signature(function).parameters.items():
+            kind, *more = get_args(one.annotation)
             is_option = any(isinstance(one, typer.models.OptionInfo) for one in more)
             if is_option and Path in (kind, *get_args(kind)) and name not in READ:
                 given = {"json_file": "--json", "output": "-o"}.get(name)

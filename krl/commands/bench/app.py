@@ -1,7 +1,5 @@
 """`krl bench`: the commands below it."""
 
-import typer
-
 from krl.commands.bench.arm import arm
 from krl.commands.bench.check import check
 from krl.commands.bench.conform import conform
@@ -13,8 +11,9 @@ from krl.commands.bench.real_code import real_code
 from krl.commands.bench.recover import recover
 from krl.commands.bench.scale import scale
 from krl.commands.bench.vm import vm
+from krl.terminal.options import Commands
 
-app = typer.Typer(help="Measure the tools themselves.")
+app = Commands(help="Measure the tools themselves.")
 app.command("mutation")(mutation)
 app.command("vm")(vm)
 app.command("arm")(arm)

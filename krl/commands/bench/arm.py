@@ -16,13 +16,14 @@ from krl.terminal.text_table import figures
 
 def arm(
     json_file: JsonOption = None,
-    motions: Annotated[
-        int, typer.Option(min=1, max=100_000, metavar="N", help="Number of motions in the program.")
-    ] = 200,
+    motions: Annotated[int, typer.Option(min=1, max=100000)] = 200,
 ) -> int:
     """Measure the arm: simulated seconds per second on each robot, and planning time per motion.
 
     The program is a list of motions, with blends and without KRL. Seconds are processor time.
+
+    Options:
+        motions: Number of motions in the program.
     """
     check_files(json_file)
     with expected_extras(*ARM):

@@ -33,30 +33,23 @@ def _missing(value: str) -> str:
 def check(
     paths: ProgramsArgument = None,
     json_file: JsonOption = None,
-    planted: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Number of mistakes, planted one at a time.")
-    ] = 120,
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the mistakes.")] = 1,
-    missing: Annotated[
-        str,
-        typer.Option(
-            metavar="WHAT",
-            help="Leave files out: a random share, 'dat' for all data lists, 'others' for all but "
-            "the checked one; 'cut' truncates three of ten.",
-            callback=_missing,
-        ),
-    ] = "0",
-    damage: Annotated[
-        Damage,
-        typer.Option(
-            help="Damage: typical mistakes, only names, lost arguments, any token, or whole lines."
-        ),
-    ] = "mistakes",
-    speed: Annotated[bool, typer.Option(help="Measure the speed.")] = True,
+    planted: Annotated[int, typer.Option(min=0)] = 120,
+    seed: int = 1,
+    missing: Annotated[str, typer.Option(metavar="WHAT", callback=_missing)] = "0",
+    damage: Damage = "mistakes",
+    speed: Annotated[bool, typer.Option("--speed/--no-speed")] = True,
 ) -> int:
     """Measure the check: seconds per MB on one core, by phase, and with a cache.
 
     Then plant random mistakes in the programs, and count how many are found.
+
+    Options:
+        planted: Number of mistakes, planted one at a time.
+        seed: Seed of the mistakes.
+        missing: Leave files out: a random share, 'dat' for all data lists, 'others' for all but the
+            checked one; 'cut' truncates three of ten.
+        damage: Damage: typical mistakes, only names, lost arguments, any token, or whole lines.
+        speed: Measure the speed.
     """
     from grammar.bench.check_speed import measure_check, steps
     from grammar.bench.planted_mistakes import measure_planted

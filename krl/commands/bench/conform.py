@@ -21,52 +21,16 @@ _SEED = 1
 
 def conform(
     json_file: JsonOption = None,
-    mutants: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Number of mutants for each seed.")
-    ] = 100,
-    seed: Annotated[
-        list[int] | None,
-        typer.Option(metavar="N", help="Seed of the mutants; repeatable; default: 1."),
-    ] = None,
-    package: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="Only mutants of this package; repeatable."),
-    ] = None,
-    most: Annotated[
-        int,
-        typer.Option(
-            "--most-cases",
-            min=1,
-            metavar="N",
-            help="Try at most N of the cases that run a mutant's lines and may fail.",
-        ),
-    ] = 1000,
-    survivors: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Write mutants that no case detects, as TSV."),
-    ] = None,
-    group: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME", help="Only planted faults of this group, or 'none'; repeatable."
-        ),
-    ] = None,
-    executor: Annotated[
-        Executor, typer.Option(help="Executor that runs the cases for planted faults.")
-    ] = Executor.TREE,
-    removed: Annotated[
-        bool,
-        typer.Option(
-            "--removed",
-            help="Instead remove from each case the feature its title names; list cases that "
-            "still pass.",
-        ),
-    ] = False,
+    mutants: Annotated[int, typer.Option(min=0)] = 100,
+    seed: Annotated[list[int] | None, typer.Option(metavar="N")] = None,
+    package: Annotated[list[str] | None, typer.Option(metavar="NAME")] = None,
+    most: Annotated[int, typer.Option("--most-cases", min=1)] = 1000,
+    survivors: Path | None = None,
+    group: Annotated[list[str] | None, typer.Option(metavar="NAME")] = None,
+    executor: Executor = Executor.TREE,
+    removed: bool = False,
     jobs: JobsOption = None,
-    cache: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Cache results here; an interrupted run continues."),
-    ] = None,
+    cache: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
 ) -> int:
     """Mutation testing of the cases: change the semantics in one place, and see if a case fails.
 
@@ -74,6 +38,18 @@ def conform(
     comparisons, arithmetic, connectives, conditions, constants, omitted statements. Planted faults
     are those that no such change makes. The cases per second are those of all cases, with the tree
     interpreter and no robot, in one process.
+
+    Options:
+        mutants: Number of mutants for each seed.
+        seed: Seed of the mutants; repeatable; default: 1.
+        package: Only mutants of this package; repeatable.
+        most: Try at most N of the cases that run a mutant's lines and may fail.
+        survivors: Write mutants that no case detects, as TSV.
+        group: Only planted faults of this group, or 'none'; repeatable.
+        executor: Executor that runs the cases for planted faults.
+        removed: Instead remove from each case the feature its title names; list cases that still
+            pass.
+        cache: Cache results here; an interrupted run continues.
     """
     check_files(json_file, survivors)
     with expected_extras(*ARM):

@@ -14,17 +14,20 @@ from krl.terminal.progress import progress_bar
 
 def fuzz(
     json_file: JsonOption = None,
-    programs: Annotated[
-        int, typer.Option(min=1, metavar="N", help="At most N programs for each mutant.")
-    ] = 200,
-    mutants: Annotated[int, typer.Option(min=1, metavar="N", help="Number of mutants.")] = 200,
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of mutants and programs.")] = 1,
+    programs: Annotated[int, typer.Option(min=1)] = 200,
+    mutants: Annotated[int, typer.Option(min=1)] = 200,
+    seed: int = 1,
     jobs: JobsOption = None,
 ) -> int:
     """Mutation testing of the fuzzer: change the machine in Python, and see if programs detect it.
 
     The changes are drawn at random, like those of `krl bench conform`. Some of them cannot be
     detected by any program.
+
+    Options:
+        programs: At most N programs for each mutant.
+        mutants: Number of mutants.
+        seed: Seed of mutants and programs.
     """
     from conformance.sensitivity.fuzzed_mutants import examine_mutants, record_of
 

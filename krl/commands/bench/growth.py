@@ -30,25 +30,13 @@ _AIM: Final = 1.15
 
 
 def growth(
-    entry: Annotated[
-        list[str] | None, typer.Option(metavar="NAME", help="Only this command; repeatable.")
-    ] = None,
-    shape: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="Only inputs of this shape; repeatable."),
-    ] = None,
-    largest: Annotated[
-        int, typer.Option(min=32, metavar="KB", help="Largest size of an input.")
-    ] = 512,
+    entry: Annotated[list[str] | None, typer.Option(metavar="NAME")] = None,
+    shape: Annotated[list[str] | None, typer.Option(metavar="NAME")] = None,
+    largest: Annotated[int, typer.Option(min=32, metavar="KB")] = 512,
     json_file: JsonOption = None,
     jobs: JobsOption = None,
-    minutes: Annotated[
-        float | None,
-        typer.Option(
-            min=0, metavar="N", help="Start nothing after N minutes; --json FILE continues later."
-        ),
-    ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the order.")] = 1,
+    minutes: Annotated[float | None, typer.Option(min=0)] = None,
+    seed: int = 1,
 ) -> int:
     """Measure how CPU time and memory of each command grow with its input.
 
@@ -57,6 +45,13 @@ def growth(
     linear, 2 quadratic, 0 constant. Each measurement runs in a process of its own. All of them take
     hours: --entry and --shape select some, and with --minutes the results in FILE are not measured
     again.
+
+    Options:
+        entry: Only this command; repeatable.
+        shape: Only inputs of this shape; repeatable.
+        largest: Largest size of an input.
+        minutes: Start nothing after N minutes; --json FILE continues later.
+        seed: Seed of the order.
     """
     check_files(json_file)
     begun = time.monotonic()

@@ -30,34 +30,27 @@ _AIMS = (
 
 
 def mutation(
-    paths: Annotated[
-        list[Path] | None,
-        typer.Argument(metavar="[PATH]...", help="Programs; default: those in corpus/programs."),
-    ] = None,
+    paths: Annotated[list[Path] | None, typer.Argument(metavar="[PATH]...")] = None,
     json_file: JsonOption = None,
-    grammar: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="The .g4 to damage; default: KRL.g4.")
-    ] = None,
-    negatives: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR", help="Programs that must stay rejected; default: corpus/negatives."
-        ),
-    ] = None,
-    singles: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Mutants with one part missing; 0: all.")
-    ] = 0,
-    multiple: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Mutants with two or three parts missing.")
-    ] = 200,
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the samples.")] = 1,
-    cache: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Cache each mutant's figures, to continue later."),
-    ] = None,
+    grammar: Path | None = None,
+    negatives: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
+    singles: Annotated[int, typer.Option(min=0)] = 0,
+    multiple: Annotated[int, typer.Option(min=0)] = 200,
+    seed: int = 1,
+    cache: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
     jobs: JobsOption = None,
 ) -> int:
-    """Measure the survey: remove parts of the grammar, and see whether it proposes them again."""
+    """Measure the survey: remove parts of the grammar, and see whether it proposes them again.
+
+    Options:
+        paths: Programs; default: those in corpus/programs.
+        grammar: The .g4 to damage; default: KRL.g4.
+        negatives: Programs that must stay rejected; default: corpus/negatives.
+        singles: Mutants with one part missing; 0: all.
+        multiple: Mutants with two or three parts missing.
+        seed: Seed of the samples.
+        cache: Cache each mutant's figures, to continue later.
+    """
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.model import GrammarError

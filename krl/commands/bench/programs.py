@@ -67,46 +67,17 @@ def _kinds(value: str) -> str:
 def programs(
     paths: ProgramsArgument = None,
     executor: ExecutorOption = None,
-    robot: Annotated[Robot, typer.Option(help="The arm that moves.")] = Robot.NONE,
-    strict: Annotated[
-        bool, typer.Option("--strict", help="Use no stand-ins for what a backup lacks.")
-    ] = False,
-    max_time: Annotated[
-        float, typer.Option(min=0.0, metavar="S", help="Virtual time for each program.")
-    ] = 600.0,
-    max_cpu: Annotated[
-        float, typer.Option(min=0.0, metavar="S", help="CPU time for each program.")
-    ] = 30.0,
+    robot: Robot = Robot.NONE,
+    strict: bool = False,
+    max_time: Annotated[float, typer.Option(min=0.0, metavar="S")] = 600.0,
+    max_cpu: Annotated[float, typer.Option(min=0.0, metavar="S")] = 30.0,
     jobs: JobsOption = None,
-    cache: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Reuse results of unchanged programs from here."),
-    ] = None,
+    cache: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
     json_file: JsonOption = None,
-    part: Annotated[
-        Part,
-        typer.Option(
-            help="How much of a backup to use: all, its users' modules, no data lists, or each "
-            ".src alone."
-        ),
-    ] = Part.WHOLE,
-    damage: Annotated[
-        str,
-        typer.Option(
-            metavar="KIND,…",
-            callback=_kinds,
-            help="Run all once more with three of ten files damaged: files (lost), lists (data "
-            "lists lost), cut, lines (lost), names (misspelt), characters (exchanged), latin "
-            "(wrong encoding), or all of these.",
-        ),
-    ] = "",
-    sample: Annotated[
-        float,
-        typer.Option(
-            min=0, max=1, metavar="SHARE", help="Run this share of the programs, at random."
-        ),
-    ] = 1.0,
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of programs and damage.")] = 1,
+    part: Part = Part.WHOLE,
+    damage: Annotated[str, typer.Option(metavar="KIND,…", callback=_kinds)] = "",
+    sample: Annotated[float, typer.Option(min=0, max=1, metavar="SHARE")] = 1.0,
+    seed: int = 1,
 ) -> int:
     """Run the main programs of backups with their own machine, tools, bases and points.
 
@@ -114,6 +85,20 @@ def programs(
     a WAIT FOR needs arrive after 1 s. A program counts as waiting once
     its arm has stood still for 20 s. Stand-ins replace what a backup lacks, as in `krl run`. Each
     origin is shown as soon as its programs have run. Exit status 1 after a defect of the workbench.
+
+    Options:
+        robot: The arm that moves.
+        strict: Use no stand-ins for what a backup lacks.
+        max_time: Virtual time for each program.
+        max_cpu: CPU time for each program.
+        cache: Reuse results of unchanged programs from here.
+        part: How much of a backup to use: all, its users' modules, no data lists, or each .src
+            alone.
+        damage: Run all once more with three of ten files damaged: files (lost), lists (data lists
+            lost), cut, lines (lost), names (misspelt), characters (exchanged), latin (wrong
+            encoding), or all of these.
+        sample: Run this share of the programs, at random.
+        seed: Seed of programs and damage.
     """
     from interp.bench.program_survey import RandomSample, RunBounds, damaged, remaining, survey
     from interp.bench.program_survey_record import survey_record

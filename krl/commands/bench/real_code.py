@@ -35,16 +35,9 @@ _ENDINGS = (
 
 def real_code(
     paths: ProgramsArgument = None,
-    executors: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--executor", metavar="NAME", help="tree, vm, native; default: all available."
-        ),
-    ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the inputs.")] = 1,
-    statements: Annotated[
-        int, typer.Option(min=1, metavar="N", help="Limit of statements for each routine.")
-    ] = 3_000,
+    executors: Annotated[list[str] | None, typer.Option("--executor", metavar="NAME")] = None,
+    seed: int = 1,
+    statements: Annotated[int, typer.Option(min=1)] = 3_000,
     json_file: JsonOption = None,
 ) -> int:
     """Try every routine of real programs: link, compile, verify, run, and compare executors.
@@ -52,6 +45,11 @@ def real_code(
     Routines with parameters are called with small values. The controller is a stub: motions take no
     time, inputs are random. Each routine runs twice; in the second run conditions are evaluated,
     actions entered, and some requests fail. Exit status 1 if executors differ.
+
+    Options:
+        executors: tree, vm, native; default: all available.
+        seed: Seed of the inputs.
+        statements: Limit of statements for each routine.
     """
     from conformance.differential.corpus_record import routines_record
     from conformance.differential.corpus_routines import Effort, routine_results

@@ -30,19 +30,19 @@ _COMMANDS: Final = {
 def scale(
     paths: ProgramsArgument = None,
     json_file: JsonOption = None,
-    sizes: Annotated[
-        str, typer.Option(metavar="MB,…", help="Sizes of the corpora, such as 20,80 or 40,1000.")
-    ] = "10,20,40",
-    command: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="Only recover, or only check; repeatable."),
-    ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the corpora.")] = 1,
+    sizes: Annotated[str, typer.Option(metavar="MB,…")] = "10,20,40",
+    command: Annotated[list[str] | None, typer.Option(metavar="NAME")] = None,
+    seed: int = 1,
 ) -> int:
     """Measure CPU time and memory of recover and check on corpora of growing size.
 
     A corpus is written to a temporary folder: copies of the programs, with other names and numbers
     and some routines left out, and a tenth random programs. One process on one core at a time.
+
+    Options:
+        sizes: Sizes of the corpora, such as 20,80 or 40,1000.
+        command: Only recover, or only check; repeatable.
+        seed: Seed of the corpora.
     """
     check_files(json_file)
     wanted = _sizes(sizes)

@@ -37,16 +37,8 @@ _AIMS = (
 
 
 def vm(
-    kernels: Annotated[
-        str,
-        typer.Option(
-            metavar="NAMES",
-            help="Kernels, separated by commas, or a folder of them. Default: all of ours.",
-        ),
-    ] = "",
-    rounds: Annotated[
-        int, typer.Option(min=1, max=100, metavar="N", help="Rounds; the best one counts.")
-    ] = 3,
+    kernels: Annotated[str, typer.Option(metavar="NAMES")] = "",
+    rounds: Annotated[int, typer.Option(min=1, max=100)] = 3,
     json_file: JsonOption = None,
 ) -> int:
     """Measure the executors: KRL kernels on each of them and in other languages; a request's cost.
@@ -55,6 +47,10 @@ def vm(
     NAME.py (a function work) or NAME.c (int work(int n)) beside it do the same in Lua 5.4 and
     LuaJIT, Python, and C with -O2. The figures are microseconds for
     one WORK(N), with the same N for all.
+
+    Options:
+        kernels: Kernels, separated by commas, or a folder of them. Default: all of ours.
+        rounds: Rounds; the best one counts.
     """
     from interp.bench.executor_speed import MeasurementError, measure_executors, steps
     from interp.bench.kernels import HERE, kernels_in

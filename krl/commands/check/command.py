@@ -44,81 +44,55 @@ _FAILING = {FailOn.ERROR: {"error"}, FailOn.ANY: {"error", "warning"}, FailOn.NE
 
 
 def check(
-    paths: Annotated[
-        list[Path],
-        typer.Argument(metavar="PATH...", help="Files, folders, .zip archives of controllers."),
-    ],
-    format_: Annotated[
-        Format, typer.Option("--format", help="How to write the findings.")
-    ] = Format.TEXT,
-    syntax_only: Annotated[
-        bool, typer.Option("--syntax-only", help="Only check whether the files parse.")
-    ] = False,
-    select: Annotated[
-        list[str] | None,
-        typer.Option(metavar="CODES", help="Report only these codes or prefixes: KSS,KRL2."),
-    ] = None,
-    ignore: Annotated[
-        list[str] | None, typer.Option(metavar="CODES", help="Leave out these codes or prefixes.")
-    ] = None,
-    stops: Annotated[
-        bool,
-        typer.Option(
-            "--stops", help="Also report what stops the advance run and which blends are lost."
-        ),
-    ] = False,
-    complete: Annotated[
-        bool,
-        typer.Option("--complete", help="The backup is complete: undeclared names are errors."),
-    ] = False,
-    packages: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAMES", help="Installed option packages: EKI,RSI."),
-    ] = None,
-    verbose: Annotated[
-        bool,
-        typer.Option("--verbose", help="Name rules behind findings, and each unknown name."),
-    ] = False,
-    fix: Annotated[
-        bool, typer.Option("--fix", help="Apply safe fixes, then check the rest.")
-    ] = False,
-    diff: Annotated[
-        bool, typer.Option("--diff", help="Show what --fix would change, and change nothing.")
-    ] = False,
-    watch: Annotated[
-        bool, typer.Option("--watch", help="Check again whenever a file changes.")
-    ] = False,
-    baseline: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Report only findings that are not in this file."),
-    ] = None,
-    write_baseline: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Write all findings to this file, as known ones."),
-    ] = None,
-    settings: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Settings file; default: krl.toml in or above PATH."),
-    ] = None,
-    no_settings: Annotated[bool, typer.Option("--no-settings", help="Ignore krl.toml.")] = False,
-    fail_on: Annotated[
-        FailOn, typer.Option(help="Which findings give exit status 1; any: errors and warnings.")
-    ] = FailOn.ANY,
-    out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write the findings to this file.")
-    ] = None,
+    paths: Annotated[list[Path], typer.Argument(metavar="PATH...")],
+    format_: Format = Format.TEXT,
+    syntax_only: bool = False,
+    select: Annotated[list[str] | None, typer.Option(metavar="CODES")] = None,
+    ignore: Annotated[list[str] | None, typer.Option(metavar="CODES")] = None,
+    stops: bool = False,
+    complete: bool = False,
+    packages: Annotated[list[str] | None, typer.Option(metavar="NAMES")] = None,
+    verbose: bool = False,
+    fix: bool = False,
+    diff: bool = False,
+    watch: bool = False,
+    baseline: Path | None = None,
+    write_baseline: Path | None = None,
+    settings: Path | None = None,
+    no_settings: bool = False,
+    fail_on: FailOn = FailOn.ANY,
+    out: Path | None = None,
     jobs: JobsOption = None,
-    cache: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Folder of cached findings; default: the user's cache."),
-    ] = None,
-    no_cache: Annotated[bool, typer.Option("--no-cache", help="Do not use the cache.")] = False,
+    cache: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
+    no_cache: bool = False,
 ) -> int:
     """Check programs: syntax, names, types, control flow, misplaced statements.
 
     Exit status 1 if there are errors or warnings, unless --fail-on says otherwise; notes alone give
     0. A comment '; krl: ignore[CODE]' silences its line, '; krl: ignore-file[CODE]' its file. 'krl
     explain CODE' says what a code means.
+
+    Options:
+        paths: Files, folders, .zip archives of controllers.
+        format_: How to write the findings.
+        syntax_only: Only check whether the files parse.
+        select: Report only these codes or prefixes: KSS,KRL2.
+        ignore: Leave out these codes or prefixes.
+        stops: Also report what stops the advance run and which blends are lost.
+        complete: The backup is complete: undeclared names are errors.
+        packages: Installed option packages: EKI,RSI.
+        verbose: Name rules behind findings, and each unknown name.
+        fix: Apply safe fixes, then check the rest.
+        diff: Show what --fix would change, and change nothing.
+        watch: Check again whenever a file changes.
+        baseline: Report only findings that are not in this file.
+        write_baseline: Write all findings to this file, as known ones.
+        settings: Settings file; default: krl.toml in or above PATH.
+        no_settings: Ignore krl.toml.
+        fail_on: Which findings give exit status 1; any: errors and warnings.
+        out: Write the findings to this file.
+        cache: Folder of cached findings; default: the user's cache.
+        no_cache: Do not use the cache.
     """
     from grammar.check.project.batch import CheckOptions
     from grammar.check.project.project_check import MANY_OBJECTS

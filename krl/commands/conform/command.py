@@ -19,69 +19,19 @@ from krl.terminal.output_files import check_files
 
 
 def conform(
-    select: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="[SELECT...]",
-            help="Suites, cases (suite/name), rules (TRG-04), topics (TRG), phases, paths, "
-            "corners (corner, corner:zero); default: all. Or: import FILE, "
-            "export FILE.zip [SELECT...], compare [SELECT...], pairs.",
-        ),
-    ] = None,
-    executor: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME",
-            help="tree, vm, native or compiled; repeatable; default: all but compiled.",
-        ),
-    ] = None,
-    robot: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME", help="none, kinematic or mujoco; repeatable."),
-    ] = None,
+    select: Annotated[list[str] | None, typer.Argument(metavar="[SELECT...]")] = None,
+    executor: Annotated[list[str] | None, typer.Option(metavar="NAME")] = None,
+    robot: Annotated[list[str] | None, typer.Option(metavar="NAME")] = None,
     json_file: JsonOption = None,
-    junit: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Write JUnit XML to FILE.")
-    ] = None,
-    html: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write the page to this folder.")
-    ] = None,
-    strict: Annotated[
-        bool,
-        typer.Option(
-            "--strict",
-            help="Unconfirmed cases count as failed: show expected and seen, exit status 1.",
-        ),
-    ] = False,
-    lint: Annotated[
-        bool, typer.Option("--lint", help="Only check whether the cases are well formed.")
-    ] = False,
-    metamorphic: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            metavar="N",
-            help="Change N cases and generated programs in ways that must not change the result.",
-        ),
-    ] = None,
-    fault: Annotated[
-        str | None,
-        typer.Option(
-            metavar="WORDS",
-            help="Plant a fault with these words in its name, or the change of a line "
-            "(interp/values/texts.py:108), and see which cases notice it.",
-        ),
-    ] = None,
-    parser: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME=WHAT",
-            help="compare: another parser, as an ANTLR grammar (FILE.g4) or a command that exits "
-            "with 0 for a file it accepts; repeatable.",
-        ),
-    ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="pairs: seed of the programs.")] = 1,
-    list_: Annotated[bool, typer.Option("--list", help="List the cases; run nothing.")] = False,
+    junit: Path | None = None,
+    html: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
+    strict: bool = False,
+    lint: bool = False,
+    metamorphic: Annotated[int | None, typer.Option(min=1)] = None,
+    fault: Annotated[str | None, typer.Option(metavar="WORDS")] = None,
+    parser: Annotated[list[str] | None, typer.Option(metavar="NAME=WHAT")] = None,
+    seed: int = 1,
+    list_: bool = False,
     jobs: JobsOption = None,
     scheduler: Annotated[str | None, scheduler_option("run the cases")] = None,
 ) -> int:
@@ -94,6 +44,24 @@ def conform(
     counts the cases that other parsers accept or reject correctly. 'krl conform pairs --seed N'
     runs programs that combine features of motions, interrupts, triggers and outputs in pairs; the
     executors must agree and no law may be broken.
+
+    Options:
+        select: Suites, cases (suite/name), rules (TRG-04), topics (TRG), phases, paths, corners
+            (corner, corner:zero); default: all. Or: import FILE, export FILE.zip [SELECT...],
+            compare [SELECT...], pairs.
+        executor: tree, vm, native or compiled; repeatable; default: all but compiled.
+        robot: none, kinematic or mujoco; repeatable.
+        junit: Write JUnit XML to FILE.
+        html: Write the page to this folder.
+        strict: Unconfirmed cases count as failed: show expected and seen, exit status 1.
+        lint: Only check whether the cases are well formed.
+        metamorphic: Change N cases and generated programs in ways that must not change the result.
+        fault: Plant a fault with these words in its name, or the change of a line
+            (interp/values/texts.py:108), and see which cases notice it.
+        parser: compare: another parser, as an ANTLR grammar (FILE.g4) or a command that exits with
+            0 for a file it accepts; repeatable.
+        seed: pairs: seed of the programs.
+        list_: List the cases; run nothing.
     """
     words, outputs = select or [], Outputs(json_file, junit, html)
     check_files(json_file, junit)

@@ -44,18 +44,18 @@ _Paths = Annotated[
 
 
 def evaluate(
-    files: Annotated[
-        list[Path], typer.Argument(metavar="FILE.toml...", help="Constructs, in this order.")
-    ],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE.toml...")],
     corpus: _Paths = None,
     jobs: JobsOrOneOption = None,
-    keep: Annotated[
-        bool, typer.Option("--keep", help="Write evidence and state into the files.")
-    ] = False,
+    keep: bool = False,
 ) -> int:
     """Evaluate constructs as accept would: evidence, effect, reasons to refuse them.
 
     Several are applied one after another. Exit status 1 if one would be refused.
+
+    Options:
+        files: Constructs, in this order.
+        keep: Write evidence and state into the files.
     """
     from recovery.ledger.construct_file import text_of
     from recovery.ledger.ledger import Ledger
@@ -73,9 +73,7 @@ def evaluate(
 
 
 def accept(
-    files: Annotated[
-        list[Path], typer.Argument(metavar="FILE.toml...", help="Constructs, in this order.")
-    ],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE.toml...")],
     corpus: _Paths = None,
     jobs: JobsOrOneOption = None,
 ) -> int:
@@ -84,6 +82,9 @@ def accept(
     Each is evaluated at its place, even if it was accepted before. If none is refused, the ledger,
     grammar/KRL.g4 and the generated parser are written, and a file from elsewhere moves to
     grammar/constructs. Exit status 1 if one is refused.
+
+    Options:
+        files: Constructs, in this order.
     """
     from grammar.notation.g4 import read_file
     from recovery.ledger.acceptance import AcceptanceRefused, write
@@ -113,19 +114,17 @@ def accept(
 
 
 def replay(
-    check: Annotated[
-        bool,
-        typer.Option("--check", help="Instead compare with grammar/KRL.g4 and run all examples."),
-    ] = False,
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="FILE", help="Write the grammar to FILE.")
-    ] = None,
-    until: Annotated[
-        int | None,
-        typer.Option(min=0, metavar="NUMBER", help="Stop after this construct; 0 is the start."),
-    ] = None,
+    check: bool = False,
+    out: Annotated[Path | None, typer.Option("--out", "-o")] = None,
+    until: Annotated[int | None, typer.Option(min=0, metavar="NUMBER")] = None,
 ) -> int:
-    """Rebuild the grammar from the restrictive start and all accepted constructs, in order."""
+    """Rebuild the grammar from the restrictive start and all accepted constructs, in order.
+
+    Options:
+        check: Instead compare with grammar/KRL.g4 and run all examples.
+        out: Write the grammar to FILE.
+        until: Stop after this construct; 0 is the start.
+    """
     from recovery.ledger.ledger import Ledger, findings, preliminary_of
     from recovery.ledger.ledger import replay as replayed
 

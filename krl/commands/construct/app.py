@@ -9,12 +9,13 @@ from krl.commands.construct.accept import accept, evaluate, replay
 from krl.commands.construct.oracle import oracle
 from krl.construct_ledger import LEDGER, PRELIMINARY, checkout_or_packaged, expected_errors
 from krl.errors import FINE, InputError, one_line
+from krl.terminal.options import Commands
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.text_table import print_columns
 
 _SURVEY = Path("reports", "out", "recover", "survey.json")
 
-app = typer.Typer(help="Constructs on their way into the grammar.")
+app = Commands(help="Constructs on their way into the grammar.")
 
 
 @app.callback()
@@ -24,11 +25,13 @@ def _construct() -> None:
 
 @app.command("list")
 def show_all(
-    json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Also write the list to FILE.")
-    ] = None,
+    json_file: Annotated[Path | None, typer.Option("--json")] = None,
 ) -> int:
-    """List the constructs of the ledger, including those that wait for a verdict."""
+    """List the constructs of the ledger, including those that wait for a verdict.
+
+    Options:
+        json_file: Also write the list to FILE.
+    """
     from recovery.ledger.ledger import Ledger
     from recovery.ledger.oracle import reason_to_ask
     from recovery.ledger.overview import row_of
@@ -58,9 +61,13 @@ def show_all(
 
 @app.command("show")
 def show(
-    wanted: Annotated[str, typer.Argument(metavar="ID", help="Its number, ID or name.")],
+    wanted: Annotated[str, typer.Argument(metavar="ID")],
 ) -> int:
-    """Show everything about a construct: edits and their difference, evidence, examples, effect."""
+    """Show everything about a construct: edits and their difference, evidence, examples, effect.
+
+    Options:
+        wanted: Its number, ID or name.
+    """
     from recovery.ledger.ledger import Ledger, preliminary_of
     from recovery.ledger.overview import difference, page_of
     from support.files.discovery import printable
@@ -77,16 +84,19 @@ def show(
 
 @app.command("propose")
 def propose(
-    cluster: Annotated[str, typer.Argument(help="ID of a cluster of the last survey.")],
-    number: Annotated[
-        int, typer.Option("--proposal", min=1, metavar="N", help="Number of the proposal.")
-    ] = 1,
-    survey: Annotated[
-        Path, typer.Option(metavar="FILE", help="The survey, as krl recover wrote it.")
-    ] = _SURVEY,
-    out: Annotated[Path, typer.Option(metavar="DIR", help="Where to write the file.")] = LEDGER,
+    cluster: Annotated[str, typer.Argument()],
+    number: Annotated[int, typer.Option("--proposal", min=1)] = 1,
+    survey: Path = _SURVEY,
+    out: Annotated[Path, typer.Option(metavar="DIR")] = LEDGER,
 ) -> int:
-    """Write a proposal of a survey to a file for review."""
+    """Write a proposal of a survey to a file for review.
+
+    Options:
+        cluster: ID of a cluster of the last survey.
+        number: Number of the proposal.
+        survey: The survey, as krl recover wrote it.
+        out: Where to write the file.
+    """
     from grammar.notation.model import GrammarError
     from recovery.ledger.construct import LedgerError
     from recovery.ledger.draft import propose as write

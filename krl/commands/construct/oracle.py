@@ -19,39 +19,25 @@ if TYPE_CHECKING:
 
 
 def oracle(
-    wanted: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="[ID]...", help="Constructs; default: those without a verdict."),
-    ] = None,
-    bundle: Annotated[
-        Path | None,
-        typer.Option(metavar="DIR", help="Write test programs and a form to fill in here."),
-    ] = None,
-    record: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Read the answers from a form.")
-    ] = None,
-    command: Annotated[
-        str | None,
-        typer.Option(
-            metavar="CMD",
-            help="Ask a command: it gets the path of a program, and exits with 0 if accepted, or "
-            "1 after printing the message.",
-        ),
-    ] = None,
-    name: Annotated[
-        str | None,
-        typer.Option(
-            metavar="TEXT",
-            help="The implementation that is asked, and the date; stored with the answer.",
-        ),
-    ] = None,
-    timeout: Annotated[
-        float, typer.Option(min=0.1, metavar="S", help="Time limit for each program.")
-    ] = 60.0,
+    wanted: Annotated[list[str] | None, typer.Argument(metavar="[ID]...")] = None,
+    bundle: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
+    record: Path | None = None,
+    command: Annotated[str | None, typer.Option(metavar="CMD")] = None,
+    name: Annotated[str | None, typer.Option(metavar="TEXT")] = None,
+    timeout: Annotated[float, typer.Option(min=0.1, metavar="S")] = 60.0,
 ) -> int:
     """List constructs that wait for a verdict of the official implementation, and ask for it.
 
     Exit status 1 if an answer differs from the ledger.
+
+    Options:
+        wanted: Constructs; default: those without a verdict.
+        bundle: Write test programs and a form to fill in here.
+        record: Read the answers from a form.
+        command: Ask a command: it gets the path of a program, and exits with 0 if accepted, or 1
+            after printing the message.
+        name: The implementation that is asked, and the date; stored with the answer.
+        timeout: Time limit for each program.
     """
     from recovery.ledger.ledger import Ledger
     from recovery.ledger.oracle import CommandOracle, OracleError, programs_of, reason_to_ask
