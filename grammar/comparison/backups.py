@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import takewhile
+from itertools import chain, takewhile
 from typing import Any
 
 from grammar.comparison.content import CodeLine, Content, Datum, RoutineText, content_of
 from grammar.comparison.matching import likest, line_operations
 from grammar.comparison.points import POINT_TYPES, frame_numbers, point_change, without_frames
 from grammar.comparison.renaming import names_in, renamed, renamings
+from grammar.semantics.project_grouping import DRIVES, drive_roots
 from grammar.syntax.source import Source
-
-_DRIVES = frozenset({"r1", "steu"})
 
 _Pair = tuple[Content, Content]
 Record = dict[str, Any]
@@ -81,10 +80,13 @@ def _folders(old: str, new: str) -> list[str]:
 
 
 def _address(path: str) -> str:
-    """Return the path of a file from the drive of its controller on, with letter case folded."""
-    parts = path.casefold().split("/")
-    start = next((n for n, part in enumerate(parts) if part in _DRIVES), 0)
-    return "/".join(parts[start:])
+    """Return the path of a file from the drive of its controller on, with letter case folded.
+
+    A folder called R1 may be all that there is of one robot, and hold the drive.
+    """
+    parts = tuple(path.casefold().split("/"))
+    named = (n for n, part in enumerate(parts) if part in DRIVES)
+    return "/".join(parts[next(chain(map(len, drive_roots(parts)), named), 0) :])
 
 
 def _paired(old: Sequence[Content], new: Sequence[Content]) -> list[_Pair]:
@@ -92,7 +94,7 @@ def _paired(old: Sequence[Content], new: Sequence[Content]) -> list[_Pair]:
         return [(old[0], new[0])]
     pairs: list[_Pair] = []
     left, right = list(old), list(new)
-    for address in (_address, _name):
+    for address in (str.casefold, _address, _name):
         there = _unique(right, address)
         here = _unique(left, address)
         for key, one in here.items():
@@ -103,8 +105,10 @@ def _paired(old: Sequence[Content], new: Sequence[Content]) -> list[_Pair]:
         right = [one for one in right if one.path not in done[1]]
     lines = {one.path: one.keys for one in left}, {one.path: one.keys for one in right}
     by_path = {one.path: one for one in left}, {one.path: one for one in right}
-    for before, after in likest(*lines, _suffix):
-        pairs.append((by_path[0][before], by_path[1][after]))
+    for kind in (_address, _suffix):
+        for before, after in likest(*lines, kind):
+            pairs.append((by_path[0][before], by_path[1][after]))
+            del lines[0][before], lines[1][after]
     return sorted(pairs, key=lambda pair: pair[1].path.casefold())
 
 

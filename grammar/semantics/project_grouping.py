@@ -26,7 +26,7 @@ from support.files.archives import is_archive
 from support.files.discovery import DRIVE_FOLDERS, Found, Skipped, SourceFile, is_drive, read_source
 from support.lazy_dataclass import dataclass
 
-_DRIVES = {"r1", "steu"}
+DRIVES = {"r1", "steu"}
 _CONFIG = "$config.dat"
 #: Calls, and what only looks like one.
 _CALL = re.compile(
@@ -119,10 +119,10 @@ def _by_layout(
     """Return the files of each controller, and the others, those of each of several $CONFIG."""
     groups: dict[tuple[bool, _Folder], list[_Placed[_File]]] = defaultdict(list)
     loose = []
-    drives = {root for placed in files for root in _drive_roots(placed.folded)}
+    drives = {root for placed in files for root in drive_roots(placed.folded)}
     renamed = _renamed_drives(files)
     for placed in files:
-        root = _last(drives, placed.folded, _DRIVES)
+        root = _last(drives, placed.folded, DRIVES)
         if root is None:
             drive = _last(renamed.keys(), placed.folded)
             root = None if drive is None else renamed[drive]
@@ -209,10 +209,10 @@ def _connected_to_first(pairs: Iterable[tuple[int, int]]) -> set[int]:
     return found
 
 
-def _drive_roots(folders: _Folder) -> Iterator[_Folder]:
+def drive_roots(folders: _Folder) -> Iterator[_Folder]:
     """Yield the folders on a path that certainly hold the drives of a controller."""
     for depth, name in enumerate(folders):
-        if name in _DRIVES:
+        if name in DRIVES:
             is_below_krc = depth > 0 and folders[depth - 1] == "krc"
             if is_below_krc or (depth + 1 < len(folders) and folders[depth + 1] in DRIVE_FOLDERS):
                 yield folders[:depth]
@@ -230,7 +230,7 @@ def _renamed_drives(files: Iterable[_Placed[_File]]) -> dict[_Folder, _Folder]:
     return {
         folder: folder[:-1] if folder and "steu" in inside[folder[:-1]] else folder
         for folder, names in inside.items()
-        if is_drive(names) and not (folder and folder[-1] in _DRIVES)
+        if is_drive(names) and not (folder and folder[-1] in DRIVES)
     }
 
 

@@ -109,6 +109,18 @@ def test_a_name_changed_throughout_is_reported_once() -> None:
     assert [] == lines(found)
 
 
+def test_the_folder_of_a_controller_is_no_part_of_a_path() -> None:
+    """Two robots get other folders: none of their files moved, and each is compared with itself."""
+    texts = {robot: MAIN.replace("$OUT[3]", f"$OUT[{robot}]") for robot in "12"}
+    old = [Source(texts[robot], f"R{robot}/KRC/R1/main.src") for robot in "12"]
+    new = [Source(texts[robot], f"hall/robot{robot}.zip/KRC/R1/main.src") for robot in "12"]
+    found = compare(old, [new[0], Source(new[1].text.replace("TO 3", "TO 4"), new[1].path)])
+    assert [] == found["files"]["moved"]
+    assert [(["FOR N = 1 TO 3"], ["FOR N = 1 TO 4"])] == lines(found)
+    same = compare(old, [Source(texts["2"], one.path) for one in old])
+    assert [(["$OUT[1] = TRUE"], ["$OUT[2] = TRUE"])] == lines(same)
+
+
 def test_a_file_that_moved_keeps_its_routines() -> None:
     """Another folder is told of the file, and of none of its routines."""
     old = [Source(MAIN, "KRC/R1/Program/a.src"), Source(DATA, "KRC/R1/Program/a.dat")]
