@@ -93,10 +93,19 @@ class Found:
 
     @property
     def is_open(self) -> bool:
-        """Whether a type may have members that are not known, as part of its line is unreadable."""
+        """Whether a type may have members, or a routine parameters, that are not known.
+
+        Part of its line is unreadable, or its scope declares it as something else, too.
+        """
         if isinstance(self.symbol, TypeSymbol) and self.symbol.is_open:
             return True
-        return self.module is not None and self.module.is_head_unread(self.symbol.key)
+        is_unread = self.module is not None and self.module.is_head_unread(self.symbol.key)
+        return is_unread or self.is_disputed
+
+    @property
+    def is_disputed(self) -> bool:
+        """Whether its scope declares it once more, as something else or with another type."""
+        return self.scope.disputes(self.symbol)
 
     def type_symbol(self) -> Answer | None:
         """Return the answer for the symbol's type name; ``None`` if it has none.
@@ -179,6 +188,11 @@ class Scope:
         """Return the symbol with that name if this scope itself declares it."""
         symbol = self._table.find(space, key)
         return self._here(space, key, symbol) if symbol else None
+
+    def disputes(self, symbol: Symbol) -> bool:
+        """Return whether another declaration of this scope contradicts that of a symbol."""
+        duplicates = self._table.duplicates
+        return any(one.first is symbol and not one.is_repetition for one in duplicates)
 
     def shadowed(self) -> Iterator[tuple[Found, Found]]:
         """Yield each symbol of this scope that hides one of an outer scope, with that one."""

@@ -161,6 +161,14 @@ class Duplicate:
     first: Symbol
     second: Symbol
 
+    @property
+    def is_repetition(self) -> bool:
+        """Whether both are variables of one simple type, so that it does not matter which counts."""
+        types = self.first.type, self.second.type
+        return all(one is not None and one.indices is None for one in types) and (
+            self.first.kind is self.second.kind is Kind.VARIABLE and types[0].key == types[1].key
+        )
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:

@@ -84,11 +84,12 @@ class TypeChecker:
         """Return the type of a declared name.
 
         Data of $CONFIG that no file declares have no certain type, because the actual declaration
-        may differ. The same holds for a data list of a program that is missing.
+        may differ. The same holds for a data list of a program that is missing, and for a name that
+        one scope declares with two types: that is one mistake, and not one at each use.
         """
         known = self._type_of.get(found)
         if known is None:
-            known = self._declared.of(found)
+            known = UNKNOWN if found.is_disputed else self._declared.of(found)
             if isinstance(found.scope, SystemScope) and found.symbol.kind is Kind.VARIABLE:
                 entry = found.scope.system.variables[found.symbol.name]
                 known = UNKNOWN if entry.file else known

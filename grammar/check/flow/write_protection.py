@@ -27,7 +27,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
 def _protected(context: Context, access: Access) -> Iterator[Diagnostic]:
     name, where = access.name, access.place or access.name
     found = context.found(name)
-    symbol = found.symbol if found else None
+    symbol = found.symbol if found and not found.is_disputed else None
     system = context.system.variables.get(name.key) if name.text.startswith("$") else None
     if symbol is not None and symbol.kind is Kind.CONSTANT:
         message = f"{symbol.name} is a constant"

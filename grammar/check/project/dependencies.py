@@ -69,6 +69,8 @@ def contribution(
         for space, symbol in table.table.symbols():
             if symbol.kind is not Kind.LABEL:
                 known.setdefault(symbol.key, []).append(f"{space.name} {_said(symbol)}")
+        for one in table.table.duplicates:
+            known.setdefault(one.first.key, []).append(f"also {_said(one.second)}")
         for symbol in table.externals.values():
             known.setdefault(symbol.key, []).append(f"EXT {_said(symbol)}")
         for name in table.calls:

@@ -23,7 +23,7 @@ from grammar.syntax import ast
 def call(checker: TypeChecker, node: ast.Call, *, is_value: bool) -> Type:
     """Return the type of a call's result, or `UNKNOWN` without a result; check its arguments."""
     found = checker.context.found(node.name)
-    if found is None or not isinstance(found.symbol, RoutineSymbol) or _is_unread(found):
+    if found is None or not isinstance(found.symbol, RoutineSymbol) or found.is_open:
         for argument in node.arguments:
             if argument is not None:
                 checker.infer(argument)
@@ -33,11 +33,6 @@ def call(checker: TypeChecker, node: ast.Call, *, is_value: bool) -> Type:
         value = _value(checker, node, found, is_value=is_value)
     checker.context.types[node] = value
     return value
-
-
-def _is_unread(found: Found) -> bool:
-    """Return whether the line that declares the parameters cannot be read."""
-    return found.module is not None and found.module.is_head_unread(found.symbol.key)
 
 
 def _is_uncertain(symbol: RoutineSymbol, scope: Scope) -> bool:

@@ -147,6 +147,15 @@ def test_a_declaration_that_changes_reaches_those_who_use_it(tmp_path: Path) -> 
     assert 1 == changed.unchanged
 
 
+def test_a_second_declaration_reaches_those_who_use_the_name(tmp_path: Path) -> None:
+    """A program is checked again if another list declares what it uses with another type, too."""
+    text = "DEFDAT SHARED PUBLIC\nDECL GLOBAL INT COUNT=1\n{}ENDDAT\n"
+    root = lay(tmp_path, SHARED__dat=text.format(""), A__src="DEF A()\nCOUNT = TRUE\nEND\n")
+    assert ("A.src", 2, "KSS1446") in codes(check(root, cache=tmp_path))
+    lay(root, SHARED__dat=text.format("DECL GLOBAL BOOL COUNT=TRUE\n"))
+    assert [("SHARED.dat", 3, "KRL104")] == codes(check(root, cache=tmp_path))
+
+
 def test_what_a_routine_does_reaches_callers_that_are_kept(tmp_path: Path) -> None:
     """A call is judged by the statements of the routine, without checking its file again."""
     caller = "DEF CALLER()\n$ANOUT[1] = SHARE(0)\nEND\n"

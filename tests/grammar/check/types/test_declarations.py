@@ -95,6 +95,22 @@ END
     )
 
 
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["DECL INT P", "DECL FRAME P ;> KRL104", "P.X = 3", "LIN P", "P = P : P"],
+        ["DECL INT P", "DECL INT P[3] ;> KRL104", "P[2] = 3"],
+        ["SIGNAL P $IN[1]", "DECL INT P ;> KRL104", "P = 3"],
+        ["DECL INT P", "DECL INT P ;> KRL104", "P = TRUE ;> KSS1446"],
+        ["ENUM T X", "ENUM T Y ;> KRL104", "DECL T P", "P = #Y"],
+        ["FETCH()", "FETCH(1)", "END", "DEF FETCH()", "END", "DEF FETCH(X:IN) ;> KRL104", "INT X"],
+    ],
+)
+def test_a_name_that_is_declared_with_two_types(agrees: Agrees, lines: list[str]) -> None:
+    """One mistake is one finding, at the second declaration, and none is at the uses."""
+    agrees("\n".join(["DEF NEG()", *lines, "END"]))
+
+
 def test_names_that_hide_others(agrees: Agrees) -> None:
     """A variable of a routine hides that of the data list, which is worth a note [SCO-05]."""
     agrees(
