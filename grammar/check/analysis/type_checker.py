@@ -162,6 +162,19 @@ class TypeChecker:
         elif to is REAL and value is INT:
             self._report_quotient(node)
 
+    def check_assignment(self, node: ast.Assignment, accepts: Accepts = assignable) -> None:
+        """Check the target of an assignment, and whether it can receive the value.
+
+        Whatever type a variable has, it takes a text only as a whole array, with brackets.
+        """
+        before, value = len(self.diagnostics), without_parentheses(node.value)
+        to = self.infer_target(node.target)
+        self.check(to, node.value, accepts)
+        is_text = isinstance(value, ast.StringLiteral) and len(value.text) > 1
+        is_whole = isinstance(node.target, ast.Subscript) and None in node.target.indices
+        if to == UNKNOWN and is_text and not is_whole and len(self.diagnostics) == before:
+            self.report("wrong-value", value, "only a whole array, NAME[], takes a text")
+
     def _brackets(self, to: Type, array: Array, node: ast.Expression) -> Fix:
         """Return the fix that passes an array as a whole; an edit where one is wanted."""
         text = "write empty brackets where the whole array is meant"

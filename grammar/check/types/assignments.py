@@ -12,10 +12,9 @@ from grammar.syntax.walk import root_variable
 
 def assign(checker: TypeChecker, node: ast.Assignment) -> None:
     """Check an assignment in a routine."""
-    to = checker.infer_target(node.target)
+    checker.check_assignment(node)
     root = root_variable(node.target)
     variable = None if root is None else _system_variable(checker, root)
-    checker.check(to, node.value)
     if variable is not None and variable.limits is not None:
         _check_limits(checker, variable, variable.limits, node)
     elif variable is not None:

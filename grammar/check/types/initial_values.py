@@ -68,7 +68,7 @@ class _Values:
 
     def element(self, node: ast.Assignment) -> None:
         """Check the initial value of an element, or of an array of CHAR."""
-        self.checker.check(self.checker.infer_target(node.target), node.value, initial)
+        self.checker.check_assignment(node, initial)
         root = root_variable(node.target)
         if root is None:
             return

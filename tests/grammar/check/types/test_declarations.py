@@ -111,6 +111,23 @@ def test_a_name_that_is_declared_with_two_types(agrees: Agrees, lines: list[str]
     agrees("\n".join(["DEF NEG()", *lines, "END"]))
 
 
+def test_only_a_whole_array_takes_a_text(agrees: Agrees) -> None:
+    """That is certain of variables too that are declared in no file at hand [TYP-11]."""
+    lines = [
+        'X[] = "text"',
+        'X[1,] = "text"',
+        'X = "t"',
+        'X = "text" ;> KSS1446',
+        'X[1] = "text" ;> KSS1446',
+        'X.NAME = ("text") ;> KSS1446',
+        'X.NAME = "text" ;> KSS1446',
+        'T[] = "text"',
+        'T = "text" ;> KSS2052',
+    ]
+    text = "\n".join(["DEF NEG()", "DECL CHAR T[9]", *lines, "END"])
+    agrees(text, is_complete=None, ignored=("KRL701", "KRL702"))
+
+
 def test_names_that_hide_others(agrees: Agrees) -> None:
     """A variable of a routine hides that of the data list, which is worth a note [SCO-05]."""
     agrees(
