@@ -163,11 +163,11 @@ class Duplicate:
 
     @property
     def is_repetition(self) -> bool:
-        """Whether both are variables of one simple type, so that it does not matter which counts."""
-        types = self.first.type, self.second.type
-        return all(one is not None and one.indices is None for one in types) and (
-            self.first.kind is self.second.kind is Kind.VARIABLE and types[0].key == types[1].key
-        )
+        """Whether both are variables of one simple type: then it does not matter which counts."""
+        one, other = self.first.type, self.second.type
+        if not one or not other or one.indices or other.indices or one.key != other.key:
+            return False
+        return self.first.kind is self.second.kind is Kind.VARIABLE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
