@@ -5,7 +5,7 @@ the `krl check` option with the same name; docs/settings.md lists them.
 """
 
 import difflib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from fnmatch import fnmatchcase
 from importlib import resources
@@ -80,17 +80,21 @@ def settings_of(paths: Sequence[Path]) -> Settings | None:
 
     Raises `InputError` if different settings apply to them.
     """
-    found = {one for path in paths if (one := _nearest(path.absolute()))}
+    found = {one for path in paths if (one := settings_file(path))}
     if len(found) > 1:
         listed = " and ".join(map(str, sorted(found)))
         raise InputError(f"{listed} are settings of different projects: check them one by one")
     return read_settings(found.pop()) if found else None
 
 
-def _nearest(path: Path) -> Path | None:
-    return next(
-        (at / FILE_NAME for at in (path, *path.parents) if (at / FILE_NAME).is_file()), None
-    )
+def settings_file(path: Path) -> Path | None:
+    """Return the file of settings that applies to a path: the nearest in or above it."""
+    return next((one for one in settings_places(path) if one.is_file()), None)
+
+
+def settings_places(path: Path) -> Iterator[Path]:
+    """Yield where the settings for a path may be, the nearest first."""
+    return (at / FILE_NAME for at in (path.absolute(), *path.absolute().parents))
 
 
 def read_settings(file: Path) -> Settings:
@@ -161,8 +165,9 @@ def _texts(key: str, value: object) -> tuple[str, ...]:
 def _codes(key: str, value: object) -> tuple[str, ...]:
     from grammar.diagnostics.selection import Selection
 
+    texts = _texts(key, value)
     try:
-        return Selection.of(_texts(key, value)).select
+        return Selection.of(texts).select
     except ValueError as error:
         raise ValueError(f"{key}: {error}") from None
 

@@ -18,7 +18,8 @@ async function start() {
     { command, args: ["lsp"] },
     {
       documentSelector: [{ scheme: "file", language: "krl" }],
-      synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher("**/{*.src,*.dat,*.sub,*.SRC,*.DAT,*.SUB,krl.toml}") },
+      // all files: of a folder that is deleted or renamed only the folder is told, and names have any case
+      synchronize: { fileEvents: vscode.workspace.createFileSystemWatcher("**/*") },
     },
   );
   try {

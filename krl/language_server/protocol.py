@@ -107,6 +107,17 @@ def diagnostic(source: Source, found: Diagnostic) -> lsp.Diagnostic:
     )
 
 
+def refusal(message: str) -> lsp.Diagnostic:
+    """Return why a file of settings cannot be used, for its beginning."""
+    start = lsp.Position(line=0, character=0)
+    return lsp.Diagnostic(
+        range=lsp.Range(start=start, end=start),
+        message=message,
+        severity=_SEVERITIES["error"],
+        source="krl",
+    )
+
+
 def document_symbol(source: Source, found: Outline) -> lsp.DocumentSymbol:
     """Return a routine or a declaration with its inner declarations."""
     return lsp.DocumentSymbol(

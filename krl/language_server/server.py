@@ -27,7 +27,6 @@ from krl.language_server.protocol import location, path_of, range_of
 from krl.language_server.semantic_tokens import MODIFIERS, TYPES, semantic_tokens
 from krl.language_server.symbols import folds, outline, wanted
 from krl.language_server.workspace import AnalysedFile, OpenProject
-from krl.project_settings import FILE_NAME
 from krl.running.project_folders import project_root
 
 # Seconds without a change after which files without an open view are checked.
@@ -78,6 +77,8 @@ class _Handlers:
         self._project = OpenProject()
         #: The URIs of open files by path, as the editor writes them.
         self._open: dict[str, str] = {}
+        #: The files of settings that the editor was told to be refused.
+        self._refused: set[Path] = set()
         self._is_read = False
         self._is_graded = False
         self._catching_up: asyncio.Task[None] | None = None
@@ -174,11 +175,7 @@ class _Handlers:
     def changed_on_disk(self, given: lsp.DidChangeWatchedFilesParams) -> None:
         """Read the files that changed outside the editor."""
         for change in given.changes:
-            path = path_of(change.uri)
-            if Path(path).name == FILE_NAME:
-                self._project.changed()
-            elif path not in self._open:
-                self._project.reload(path)
+            self._project.changed_on_disk(path_of(change.uri), self._open)
         self._publish()
 
     def _publish(self) -> None:
@@ -212,6 +209,10 @@ class _Handlers:
                 self._tell(
                     uri, [protocol.diagnostic(looked.source, one) for one in looked.diagnostics]
                 )
+        refused = self._project.refused
+        for file in self._refused | refused.keys():
+            self._tell(file.as_uri(), [protocol.refusal(refused[file])] if file in refused else [])
+        self._refused = {*refused}
 
     def _tell(self, uri: str, found: list[lsp.Diagnostic]) -> None:
         self._server.text_document_publish_diagnostics(

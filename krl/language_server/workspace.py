@@ -9,7 +9,7 @@ the protocol are converted in `krl.language_server.server`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -31,7 +31,7 @@ from grammar.syntax.ast import Name
 from grammar.syntax.source import Source
 from krl.baseline_file import baseline_place, read_baseline
 from krl.errors import InputError
-from krl.project_settings import Settings, settings_of
+from krl.project_settings import FILE_NAME, Settings, read_settings, settings_file
 from support.files import discovery
 from support.files.decode import Decoded, decode
 from support.files.untrusted import read_bytes
@@ -116,8 +116,11 @@ class OpenProject:
         self._looked: dict[str, AnalysedFile] = {}
         self._judged: dict[str, _Judged] = {}
         self._origins: dict[Path, str] = {}
-        self._agreed: dict[Path, Settings] = {}
+        self._agreed: dict[Path | None, Settings] = {}
         self._groups: dict[str, tuple[Settings, str] | None] = {}
+        self._folders: dict[Path, None] = {}
+        #: By file of settings what `krl check` says of it instead of checking.
+        self.refused: dict[Path, str] = {}
 
     def add_folder(self, folder: Path) -> Iterator[str]:
         """Add the KRL files in a folder one by one, and yield their paths.
@@ -125,6 +128,7 @@ class OpenProject:
         Files beyond `MOST_FILES` and files that are already open are skipped; a missing folder has
         none.
         """
+        self._folders[folder] = None
         try:
             found = [
                 one for one in discovery.discover([folder]) if isinstance(one, discovery.Found)
@@ -170,6 +174,27 @@ class OpenProject:
         self._unlink()
         self._groups.clear()
         self._agreed.clear()
+        self.refused.clear()
+
+    def changed_on_disk(self, path: str, shown: Container[str]) -> None:
+        """Read what changed at a path: a program, a file of settings, a folder with all in it.
+
+        The text of files that are ``shown`` is that of the editor.
+        """
+        place = Path(path)
+        if place.name == FILE_NAME or place in {one.baseline for one in self._agreed.values()}:
+            self.changed()
+        elif path.lower().endswith(discovery.SUFFIXES):
+            if path not in shown:
+                self.reload(path)
+        elif place.is_dir() or any(one.startswith(f"{path}/") for one in self._files):
+            self.changed()
+            for one in [one for one in self._files if one.startswith(f"{path}/")]:
+                if one not in shown:
+                    self.reload(one)
+            for folder in list(self._folders):
+                for _ in self.add_folder(folder):
+                    pass
 
     def _unlink(self) -> None:
         self._linked = None
@@ -305,17 +330,25 @@ class OpenProject:
     def _settings(self, path: str) -> Settings:
         """Return the settings for a file.
 
-        Unreadable settings are ignored here; `krl check` reports them.
+        Those that cannot be used are `refused`, and the file is checked without them.
         """
         folder = Path(path).parent
         if folder not in self._agreed:
-            try:
-                read = settings_of([folder]) or _NONE
-            except InputError:
-                read = _NONE
-            # one object for each file of settings, by which files are grouped
-            self._agreed[folder] = next((one for one in self._agreed.values() if one == read), read)
+            file = settings_file(folder)
+            if file not in self._agreed:  # one object for each file, by which files are grouped
+                self._agreed[file] = self._read_settings(file) if file else _NONE
+            self._agreed[folder] = self._agreed[file]
         return self._agreed[folder]
+
+    def _read_settings(self, file: Path) -> Settings:
+        agreed = _NONE
+        try:
+            agreed = read_settings(file)
+            if agreed.baseline:
+                read_baseline(agreed.baseline)
+        except InputError as error:
+            self.refused[file] = str(error)
+        return agreed
 
 
 def _read(path: str, text: str) -> _Read:

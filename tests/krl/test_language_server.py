@@ -315,6 +315,46 @@ def test_what_is_agreed_on_counts_as_in_a_check(project: OpenProject, tmp_path: 
     assert "OTHER" not in offered(project, "  O")
 
 
+@pytest.mark.parametrize(
+    ("settings", "reason"),
+    [
+        ('ignore = "KRL4"', "ignore must be a list of texts"),
+        ('ignore = ["KRL4"]\nbaseline = "lost.json"', "lost.json: No such file or directory"),
+    ],
+)
+def test_settings_that_a_check_refuses_are_told(
+    project: OpenProject, tmp_path: Path, settings: str, reason: str
+) -> None:
+    """An editor says so of the file of settings, until they can be used."""
+    file = tmp_path / "krl.toml"
+    file.write_text(settings, encoding="utf-8")
+    project.changed_on_disk(file.as_posix(), ())
+    project.look(project.paths()[0])
+    assert [file] == [*project.refused]
+    assert reason in project.refused[file]
+    file.write_text("", encoding="utf-8")
+    project.changed_on_disk(file.as_posix(), ())
+    project.look(project.paths()[0])
+    assert {} == project.refused
+
+
+def test_a_folder_that_goes_takes_its_files_along(tmp_path: Path) -> None:
+    """The editor tells the folder alone; what is shown keeps the text of the editor."""
+    for name in ("A", "B"):
+        place = tmp_path / "old" / f"{name}.Src"
+        place.parent.mkdir(exist_ok=True)
+        place.write_text(f"DEF {name}()\nEND\n", encoding="utf-8")
+    project, old, new = OpenProject(), tmp_path / "old", tmp_path / "new"
+    assert 2 == len([*project.add_folder(tmp_path)])
+    old.rename(new)
+    for folder in (old, new):
+        project.changed_on_disk(folder.as_posix(), {f"{old.as_posix()}/B.Src"})
+    left = [*map(Path, project.paths())]
+    assert [new / "A.Src", new / "B.Src", old / "B.Src"] == left
+    project.changed_on_disk((tmp_path / "note.txt").as_posix(), ())
+    assert left == [*map(Path, project.paths())]
+
+
 def codes(project: OpenProject, file: str) -> list[str]:
     looked = project.look(next(one for one in project.paths() if one.endswith(file)))
     assert looked is not None
@@ -369,7 +409,11 @@ def message(**fields: object) -> bytes:
 
 
 def test_the_server_mends_completes_and_ends(tmp_path: Path) -> None:
-    """Code actions and completion are answered; it ends quietly when it is told to."""
+    """Code actions and completion are answered; it ends quietly when it is told to.
+
+    Settings that cannot be used are told of their file.
+    """
+    (tmp_path / "krl.toml").write_text("ignore = 1", encoding="utf-8")
     uri = (tmp_path / "A.src").as_uri()
     text = "DEF A()\n  INT N\n  IF N = 1 THEN\n  ENDIF\n  $VEL.CB = 1\nEND\n"
     place = {"line": 2, "character": 2}
@@ -407,6 +451,7 @@ def test_the_server_mends_completes_and_ends(tmp_path: Path) -> None:
     assert (0, b"") == (done.returncode, done.stderr)
     assert b'"newText":"=="' in done.stdout.replace(b": ", b":")
     assert b"ignore KRL001 here" in done.stdout
+    assert b"krl.toml: ignore must be a list of texts" in done.stdout
     assert b"write CP" in done.stdout
     assert b'"label":"$OUT"' in done.stdout.replace(b": ", b":")
 
