@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -363,13 +364,39 @@ def test_fixes_of_checks_and_of_syntax(tmp_path: Path, capsys: pytest.CaptureFix
     assert after == file.read_text(encoding="utf-8")
 
 
+def test_watching_notices_all_that_matters(programs: Path) -> None:
+    """A save while a check runs counts, and so do settings above the folder and a baseline."""
+    pytest.importorskip("watchfiles")
+    settings, known, folder = programs / "krl.toml", programs / "known.json", programs / "cell"
+    folder.mkdir()
+    files = [settings]
+    looks = watching.changes([folder], lambda: files)
+
+    def is_noticed() -> bool:
+        thread = threading.Thread(target=next, args=(looks,), daemon=True)
+        thread.start()
+        thread.join(20)
+        return not thread.is_alive()
+
+    assert is_noticed()
+    (folder / "A.src").write_text(FINE, encoding="utf-8")
+    assert is_noticed()
+    settings.write_text("", encoding="utf-8")
+    assert is_noticed()
+    files.append(known)
+    settings.unlink()
+    assert is_noticed()
+    known.write_text("", encoding="utf-8")
+    assert is_noticed()
+
+
 def test_watching_goes_on(
     programs: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Changed settings apply, and files or settings that cannot be read end nothing."""
     settings = programs / "krl.toml"
 
-    def changes(_paths: object) -> Iterator[None]:
+    def changes(_paths: object, _beside: object) -> Iterator[None]:
         yield
         settings.write_text('ignore = ["KRL001"]', encoding="utf-8")
         yield

@@ -2,8 +2,9 @@
 
 import os
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from enum import StrEnum
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,7 +14,7 @@ from krl.baseline_file import baseline_place, read_baseline
 from krl.commands.check.output import Format, sum_up, write
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
 from krl.extras import expected_extras
-from krl.project_settings import Settings, read_settings, settings_of
+from krl.project_settings import Settings, read_settings, settings_of, settings_places
 from krl.terminal.options import JobsOption
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
@@ -136,22 +137,46 @@ def check(
     if write_baseline:
         return check_.make_baseline(write_baseline)
     if watch:
-        from krl.commands.check.watching import changes
-
+        places = [settings] if settings else chain.from_iterable(map(settings_places, paths))
         with expected_extras("watchfiles"):
-            for is_again, _ in enumerate(changes(paths)):
-                try:
-                    as_agreed().run(format_, out, verbose)
-                except InputError as error:
-                    if not is_again:
-                        raise
-                    # files are gone or half written for a moment
-                    typer.echo(one_line(f"krl: {error}"), err=True)
+            _watch(
+                paths,
+                [] if no_settings else [*places],
+                as_agreed,
+                lambda one: one.run(format_, out, verbose),
+            )
         return FINE
     with gc_paused(MANY_OBJECTS):
         found = check_.run(format_, out, verbose)
         visit_seldom()
     return FINDINGS if found & _FAILING[fail_on] else FINE
+
+
+def _watch(
+    paths: Sequence[Path],
+    settings: Sequence[Path],
+    as_agreed: "Callable[[], _Check]",
+    run: "Callable[[_Check], object]",
+) -> None:
+    """Check again and again; ``settings`` are the files that ``as_agreed`` may read."""
+    from krl.commands.check.watching import changes
+    from krl.running.project_folders import project_root
+
+    baseline: Path | None = None
+
+    def beside() -> Iterator[Path]:
+        return filter(None, (baseline, *settings))
+
+    for is_again, _ in enumerate(changes([*map(project_root, paths)], beside)):
+        try:
+            check_ = as_agreed()
+            baseline = check_.baseline
+            run(check_)
+        except InputError as error:
+            if not is_again:
+                raise
+            # files are gone or half written for a moment
+            typer.echo(one_line(f"krl: {error}"), err=True)
 
 
 def _agreed(paths: Sequence[Path], file: Path | None, has_none: bool) -> Settings:
