@@ -16,7 +16,6 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
-from functools import cache
 from itertools import combinations, product
 from pathlib import Path
 from random import Random
@@ -24,9 +23,8 @@ from shutil import copyfile
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
-
 from conformance.suite.case import CASES, Case, find_cases
+from conformance.suite.templates import template
 
 FOLDER: Final = CASES / "interaction"
 _HERE: Final = Path(__file__).parent
@@ -170,7 +168,7 @@ def _main(name: str, row: Row) -> list[str]:
         if row["act"] in _STOPS:  # how it stops and goes on is less certain than its path
             motions = [_STOPPED.sub(rf"\1[{_STOPS[row['act']]}]", text) for text in motions]
     return (
-        _template()
+        template("interactions.krl.j2")
         .render(
             row,
             name=name,
@@ -199,18 +197,6 @@ def _never(row: Row) -> str:
 def _bare(text: str) -> str:
     """Return a statement without its expectations."""
     return text.partition(";>")[0].rstrip()
-
-
-@cache
-def _template() -> Template:
-    environment = Environment(
-        loader=FileSystemLoader(_HERE),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        autoescape=False,
-    )
-    return environment.get_template("interactions.krl.j2")
 
 
 def _write() -> None:
