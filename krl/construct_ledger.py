@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from krl.errors import as_input_errors, one_line
+from krl.errors import as_input_errors, one_line, say
 
 if TYPE_CHECKING:
     from recovery.ledger.evaluation import Evaluation
@@ -54,7 +54,7 @@ def print_evaluation(found: "Evaluation") -> None:
 
     construct = found.construct
     evidence, effect = construct.evidence, construct.effect
-    typer.echo(one_line(f"{construct.id}: {construct.title}"))
+    say(f"{construct.id}: {construct.title}")
     old = "" if found.is_counted else " (as written in the file: there is no corpus to count in)"
     typer.echo(f"  evidence   {counts_of(evidence)}{old}")
     typer.echo(f"  grounds    {', '.join(evidence.grounds) or 'none'}")
@@ -73,4 +73,4 @@ def print_evaluation(found: "Evaluation") -> None:
 def print_refusals(refusals: Iterable[tuple[str, str]]) -> None:
     """Print the refusals: where and why."""
     for where, why in refusals:
-        typer.echo(one_line(f"refused: {where}: {why}"))
+        say(f"refused: {where}: {why}")

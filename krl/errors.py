@@ -47,6 +47,11 @@ def one_line(text: str) -> str:
     return shown(" ".join(text.split()))
 
 
+def say(text: str, *, err: bool = False) -> None:
+    """Print a text on one line of stdout or stderr, whatever characters it has."""
+    typer.echo(one_line(text), err=err)
+
+
 def shown(text: str) -> str:
     """Return a line with control characters escaped, so that it cannot steer a terminal."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)

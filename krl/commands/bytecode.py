@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.errors import FINDINGS, FINE, InputError, say
 from krl.running.program_loading import compile_project
 from krl.running.run_options import FileArgument
 from krl.terminal.output_files import check_files
@@ -48,13 +48,13 @@ def compile_file(
         notes += _native_code(image.data)
     notes += image.refusals
     for line in notes[:_MOST_LISTED]:
-        typer.echo(one_line(line), err=True)
+        say(line, err=True)
     if len(notes) > _MOST_LISTED:
         typer.echo(f"and {len(notes) - _MOST_LISTED} more", err=True)
     count = f"{image.codes:,} code objects, {image.instructions:,} instructions"
     if image.files > 1:
         count += f", from {image.files:,} files of the project"
-    typer.echo(one_line(f"{target}: {count}"))
+    say(f"{target}: {count}")
     return FINDINGS if image.refusals else FINE
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say
 from krl.terminal.options import Commands
 from krl.terminal.text_table import print_columns
 from reports.rendering.number_format import counted
@@ -84,10 +84,10 @@ def fetch(
     _print_rows(rows)
     problems = [problem for result in results for problem in result.problems]
     for problem in problems:
-        typer.echo(one_line(f"missing: {problem}"), err=True)
+        say(f"missing: {problem}", err=True)
     written = sum(result.written for result in results)
     had = written + sum(result.kept for result in results)
-    typer.echo(one_line(f"{had} of {wanted} files in {out}, {written} of them new"))
+    say(f"{had} of {wanted} files in {out}, {written} of them new")
     return FINDINGS if problems else FINE
 
 
@@ -123,11 +123,11 @@ def synth(
     with progress_bar("writing", wanted) as advance, as_input_errors(IngestError, ValueError):
         written = write_corpus(roots, folder, wanted, seed, advance)
     files, cells = counted(written.files, "file"), counted(written.cells, "cell")
-    typer.echo(one_line(f"{written.bytes:,} bytes in {files} of {cells} in {folder}"))
+    say(f"{written.bytes:,} bytes in {files} of {cells} in {folder}")
     others = sum(path.is_file() for path in folder.rglob("*")) - written.files
     if others:
         beside = counted(others, "file")
-        typer.echo(one_line(f"{folder} has {beside} beside them, from before"), err=True)
+        say(f"{folder} has {beside} beside them, from before", err=True)
     return FINE
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.errors import FINDINGS, FINE, InputError, say
 from krl.running.run_options import RunOptions, expected_errors, prepared_run, with_run_options
 
 if TYPE_CHECKING:
@@ -59,15 +59,13 @@ def _at_prompt(file: Path, options: RunOptions) -> int:
         is_terminal = sys.stdin.isatty() and sys.stdout.isatty()
         program, setup = prepared_run(file, options, is_terminal=is_terminal)
         prompt = Prompt(program, is_terminal=is_terminal)
-        debugger = Debugger(program, prompt.stopped, lambda text: typer.echo(one_line(text)))
+        debugger = Debugger(program, prompt.stopped, say)
         with _pausing(debugger, prompt):
-            done = debugged_run(
-                program, setup, debugger, lambda text: typer.echo(one_line(f"message: {text}"))
-            )
+            done = debugged_run(program, setup, debugger, lambda text: say(f"message: {text}"))
         if done is None:
             return FINDINGS if prompt.has_failed else FINE
         for line in run_notes(done, program, setup):
-            typer.echo(one_line(line), err=True)
+            say(line, err=True)
     is_fine = done.outcome.ending in ("end", "halt") and not prompt.has_failed
     return FINE if is_fine else FINDINGS
 

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from krl.commands.run import run
-from krl.errors import InputError, one_line
+from krl.errors import InputError, say
 from krl.running.run_options import Robot
 
 _NAME, _SUBMIT = "search_demo", "count_parts"
@@ -37,7 +37,7 @@ def demo(
     program = folder / "R1" / "Program" / f"{_NAME}.src"
     script = program.with_suffix(".io")
     words = f"krl run {program} --robot mujoco --io {script} --submit {_SUBMIT} --html {html}"
-    typer.echo(one_line(words), err=True)
+    say(words, err=True)
     status = run(program, robot=Robot.MUJOCO, io=script, submit=_SUBMIT, html=html)
     if opened:
         webbrowser.open(html.absolute().as_uri())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.errors import BAD_INPUT, FINDINGS, FINE, InputError, one_line
+from krl.errors import BAD_INPUT, FINDINGS, FINE, InputError, one_line, say
 from support.files.atomic_write import write_atomic
 from support.gc_pause import gc_paused
 
@@ -95,7 +95,7 @@ def _format(candidate: "Found | Skipped", check: bool) -> _Outcome:
 
 
 def _complain(path: str, what: str, outcome: _Outcome) -> _Outcome:
-    typer.echo(one_line(f"{path}: {what}"), err=True)
+    say(f"{path}: {what}", err=True)
     return outcome
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.console import Console
 
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say
 from krl.extras import need
 from krl.terminal.options import JobsOption, JsonOption, all_cores, scheduler_option
 from krl.terminal.output_files import check_files, write_json
@@ -86,18 +86,16 @@ def _print_summary(found: "Findings", seconds: float) -> None:
 
     console = Console(highlight=False)
     ends = ", ".join(f"{count:,} with {word}" for word, count in sorted(found.ends.items()))
-    console.print(
+    say(
         f"{found.programs:,} programs on {', '.join(found.executors)} in {seconds:,.1f} s, "
-        f"{found.facts:,} requests and events; ended: {ends}",
-        soft_wrap=True,
+        f"{found.facts:,} requests and events; ended: {ends}"
     )
     for kind, names in missing(found.counts).items():
-        console.print(f"Never executed, {kind}: {', '.join(names)}", soft_wrap=True)
+        say(f"Never executed, {kind}: {', '.join(names)}")
     never = [rule for rule in found.rules if not found.counts["rule", rule]]
-    console.print(
+    say(
         f"Reached {len(found.rules) - len(never)} of {len(found.rules)} rules and clauses that have"
-        f" cases with something of their own; never: {', '.join(never) or 'none'}",
-        soft_wrap=True,
+        f" cases with something of their own; never: {', '.join(never) or 'none'}"
     )
     count = len(found.findings)
     if not count:

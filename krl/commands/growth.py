@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from krl.construct_ledger import expected_errors
-from krl.errors import FINE, InputError, one_line
+from krl.errors import FINE, InputError, one_line, say
 from krl.terminal.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
 from krl.terminal.output_files import check_targets, write_json
 from krl.terminal.progress import progress_bar
@@ -79,29 +79,27 @@ def _print(record: "GrowthRecord", page: Path) -> None:
     console = Console(highlight=False, markup=False, emoji=False)
     steps = record["steps"]
     first, last = steps[0], steps[-1]
-    console.print(
+    say(
         f"{counted(record['files'], 'file')}, {record['bytes'] / 1e6:.2f} MB; "
         f"{counted(len(steps) - 1, 'construct')}; "
         f"parsed {first['parsed']:,} at the start, {last['parsed']:,} at the end "
         f"({share(last['parsed'], last['files'])} of files, "
-        f"{share(last['parsed_bytes'], last['bytes'])} of bytes); {record['seconds']:.1f} s",
-        soft_wrap=True,
+        f"{share(last['parsed_bytes'], last['bytes'])} of bytes); {record['seconds']:.1f} s"
     )
     console.print(_table(steps))
     ambiguous, look = record["ambiguous"], record["lookahead"]
-    console.print(
+    say(
         f"Of {look['decisions']} decisions {look['one']:.1f} % are taken on one token, "
         f"{look['two']:.1f} % on at most two; {ambiguous['lines']:,} of {ambiguous['of']:,} lines "
-        "have two readings.",
-        soft_wrap=True,
+        "have two readings."
     )
     left = record["remaining_files"]
     for file in left[:_LEFT]:
         why = f"{file['kind']}: {file['reason']}" if file["kind"] else "open"
-        console.print(f"remains: {one_line(file['path'])}: {one_line(why)}", soft_wrap=True)
+        say(f"remains: {one_line(file['path'])}: {one_line(why)}")
     if len(left) > _LEFT:
         console.print(f"… and {len(left) - _LEFT} more files remain")
-    console.print(f"Page: {one_line(str(page))}", soft_wrap=True)
+    say(f"Page: {one_line(str(page))}")
 
 
 def _table(steps: "Sequence[StepRecord]") -> Table:

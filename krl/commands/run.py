@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, BinaryIO
 
 import typer
 
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say
 from krl.running.run_notes import NOTED, refused, run_notes
 from krl.running.run_options import (
     FileArgument,
@@ -98,10 +98,10 @@ def run(
         if observations is not None:
             _write_observations(done, observations)
     for line in run_notes(done, program, setup):
-        typer.echo(one_line(line), err=True)
-    typer.echo(one_line(f"{program.main.module.path}: {done.outcome}"))
+        say(line, err=True)
+    say(f"{program.main.module.path}: {done.outcome}")
     if html is not None:
-        typer.echo(one_line(f"page: {html}"))
+        say(f"page: {html}")
     is_fine = done.outcome.ending in ("end", "halt") and not done.controller.skipped
     is_fine &= next(refused(done), None) is None
     is_fine &= all(seen.is_estimate for seen in done.observations)
@@ -160,7 +160,7 @@ def _performed(
 
         done = run_program(prepared, setup, take=take, on_time=on_time)
     for note in prepared.notes:
-        typer.echo(one_line(note), err=True)
+        say(note, err=True)
     if writer is not None and writer.ended is not None:
         at = f"{writer.ended / 1e6:g} s, at {most // 1_000_000:,} MB"
         typer.echo(f"trace: it ends at {at}; --max-trace allows more", err=True)
@@ -207,7 +207,7 @@ def _tracing(file: Path | None, most: int) -> Iterator[_TraceWriter | None]:
             except (KeyboardInterrupt, SystemExit) as error:
                 ended = error
         if ended is not None:
-            typer.echo(one_line(f"trace: {file} ends where the run was interrupted"), err=True)
+            say(f"trace: {file} ends where the run was interrupted", err=True)
             raise ended
 
 

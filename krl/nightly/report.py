@@ -6,9 +6,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-import typer
-
-from krl.errors import one_line
+from krl.errors import say
 from krl.nightly.step_runner import step_record
 from krl.terminal.output_files import write_json
 from reports.conformance.claims_page import write_claims_page
@@ -55,12 +53,12 @@ def report_run(
     bound_store(folder)
     write_atomic(folder / "summary.md", nightly_summary({**run, "changes": reported}))
     for one in failed:
-        typer.echo(one_line(f"failed: {one['what']}"))
+        say(f"failed: {one['what']}")
     if left := incomplete(states):
-        typer.echo(one_line(left))
+        say(left)
     for line in reported or ["nothing changed since the last nightly run"]:
-        typer.echo(one_line(line))
-    typer.echo(one_line(f"page: {page}"))
+        say(line)
+    say(f"page: {page}")
     return failed
 
 

@@ -27,7 +27,7 @@ from interp.debugging.value_text import value_text
 from interp.port.requests import At
 from interp.program.load import CheckedProgram
 from interp.values.faults import RuntimeFailure
-from krl.errors import one_line, shown
+from krl.errors import say, shown
 
 _BREAK = re.compile(
     r"(?:(?P<file>[^\s:]+):)?(?P<line>\d+)"
@@ -127,7 +127,7 @@ class Prompt(cmd.Cmd):
 
     @staticmethod
     def _say(text: str) -> None:
-        typer.echo(one_line(text))
+        say(text)
 
     def _tell_stop(self) -> None:
         stop = self._stop

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
-from krl.errors import InputError, as_input_errors, one_line
+from krl.errors import InputError, as_input_errors, say
 from krl.extras import ARM, expected_extras
 from krl.project_settings import settings_of
 from krl.running.arm_files import read_arm
@@ -204,7 +204,7 @@ def prepared_run(
         paths = {unit.module.path for unit in reached}
         left = sorted(left, key=lambda why: why.partition(":")[0] not in paths)
     for why in left[:_MOST_LISTED]:
-        typer.echo(one_line(f"left out: {why}"), err=True)
+        say(f"left out: {why}", err=True)
     if len(left) > _MOST_LISTED:
         typer.echo(f"left out: {len(left) - _MOST_LISTED} more in the project", err=True)
     return program, setup

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from krl.errors import one_line
+from krl.errors import one_line, say
 from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
@@ -25,11 +25,10 @@ def print_survey(record: "SurveyRecord", page: Path) -> None:
     """Print the figures of `record`, its first clusters, and `page`."""
     console = Console(highlight=False, markup=False, emoji=False)
     files, parsed = record["files"], record["parsed"]
-    console.print(
+    say(
         f"{counted(files, 'file')}, {record['bytes'] / 1e6:.2f} MB; parsed {parsed:,} "
         f"({share(parsed, files)} of files, {share(record['parsed_bytes'], record['bytes'])} "
-        f"of bytes); skipped {len(record['skipped']):,}; surveyed in {record['seconds']:.1f} s",
-        soft_wrap=True,
+        f"of bytes); skipped {len(record['skipped']):,}; surveyed in {record['seconds']:.1f} s"
     )
     for skipped in record["skipped"][:_SKIPPED]:
         console.print(
@@ -47,13 +46,13 @@ def print_survey(record: "SurveyRecord", page: Path) -> None:
         console.print("Nothing is missing: every file parses under this grammar.")
     start = record.get("start")
     if start is not None:
-        console.print(_story(start), soft_wrap=True)
+        say(_story(start))
     if record["swallowed"]:
         words = ", ".join(s["word"] for s in record["swallowed"][:_WORDS])
         console.print(
             f"Read as names everywhere and bound nowhere, perhaps keywords: {one_line(words)}"
         )
-    console.print(f"Page: {one_line(str(page))}", soft_wrap=True)
+    say(f"Page: {one_line(str(page))}")
 
 
 def share(part: float, whole: float) -> str:

@@ -1,19 +1,16 @@
 """Tables in the terminal."""
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 import typer
 
 from krl.errors import one_line
 
-if TYPE_CHECKING:
-    from rich.table import Table
 
-
-def figures(columns: Sequence[str], rows: Iterable[Sequence[str]] = ()) -> "Table":
-    """Return a table with these headings: text, then figures, which are never wrapped."""
+def print_figures(columns: Sequence[str], rows: Iterable[Sequence[str]], *notes: str) -> None:
+    """Print a table, first a text and then figures, which are never wrapped; then some notes."""
     from rich import box
+    from rich.console import Console
     from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
@@ -21,7 +18,8 @@ def figures(columns: Sequence[str], rows: Iterable[Sequence[str]] = ()) -> "Tabl
         table.add_column(heading, justify="right" if place else "left", no_wrap=place > 0)
     for row in rows:
         table.add_row(*row)
-    return table
+    for part in (table, *notes):
+        Console(highlight=False).print(part)
 
 
 def print_columns(*rows: Sequence[str]) -> None:
@@ -33,6 +31,6 @@ def print_columns(*rows: Sequence[str]) -> None:
         typer.echo(f"  {'  '.join(cells)}".rstrip())
 
 
-def plain(figure: float | None) -> str:
-    """Return a figure with few digits, or a dash if there is none."""
-    return "–" if figure is None else f"{figure:g}"
+def plain(figure: float | None, form: str = "{:g}") -> str:
+    """Return a figure in a form, with few digits by default, or a dash if there is none."""
+    return "–" if figure is None else form.format(figure)

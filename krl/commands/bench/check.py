@@ -1,17 +1,14 @@
 """`krl bench check`: what checking a corpus costs, and how many planted mistakes it finds."""
 
-from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 import typer
-from rich.console import Console
 
-from krl.commands.bench.phases import phases_table
-from krl.errors import FINE, as_input_errors
+from krl.commands.bench.bench_command import Record, bench, print_phases
+from krl.errors import as_input_errors, say
 from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
-from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import figures, plain
+from krl.terminal.text_table import plain, print_figures
 from reports.rendering.number_format import counted
 from support.measure.speed import MB
 
@@ -30,15 +27,69 @@ def _missing(value: str) -> str:
     return value
 
 
+def _print(record: Record) -> None:
+    if "s_per_mb" in record:
+        _print_speed(record)
+    if "planted" in record:
+        _print_planted(record["planted"])
+
+
+def _print_speed(record: Record) -> None:
+    counts = record["findings"]
+    found = ", ".join(
+        counted(counts[word], word) for word in ("error", "warning", "note") if word in counts
+    )
+    say(
+        f"{counted(record['files'], 'file')} of {counted(record['projects'], 'project')}, "
+        f"{record['bytes'] / MB:.2f} MB; {found or 'no findings'}; Python {record['python']}"
+    )
+    print_figures(
+        ("figure", "", "aim"),
+        [
+            ("first check", f"{record['s_per_mb']:.2f} s/MB", "1 s/MB"),
+            ("nothing changed", f"{record['unchanged_s_per_mb']:.3f} s/MB", ""),
+            ("one file changed", plain(record["one_changed_seconds"], "{:.2f} s"), "0.3 s"),
+        ],
+    )
+    print_phases(record)
+
+
+def _print_planted(planted: Record) -> None:
+    for title, rows in (
+        ("planted mistakes", [*planted["kinds"], {"kind": "all", **planted}]),
+        ("misspelt names", planted["names"]),
+    ):
+        if rows:
+            print_figures(
+                (title, "planted", "found", "in place", "findings, median", "p95", "most"),
+                [(row["kind"], *(plain(row[n]) for n in _PLANTED_FIGURES)) for row in rows],
+            )
+    say(f"findings each in the median file: {plain(planted['median_file'])}")
+    before = planted["unplanted"]
+    print_figures(
+        ("before planting", "findings", "per 1,000 lines", "for what is missing"),
+        [
+            (
+                code,
+                f"{count:,}",
+                f"{1000 * count / before['lines']:.2f}",
+                f"{before['caused'].get(code, 0):,}",
+            )
+            for code, count in before["codes"].items()
+        ],
+    )
+
+
+@bench(_print)
 def check(
     paths: ProgramsArgument = None,
-    json_file: JsonOption = None,
+    _json_file: JsonOption = None,
     planted: Annotated[int, typer.Option(min=0)] = 120,
     seed: int = 1,
     missing: Annotated[str, typer.Option(metavar="WHAT", callback=_missing)] = "0",
     damage: Damage = "mistakes",
     speed: Annotated[bool, typer.Option("--speed/--no-speed")] = True,
-) -> int:
+) -> Record:
     """Measure the check: seconds per MB on one core, by phase, and with a cache.
 
     Then plant random mistakes in the programs, and count how many are found.
@@ -56,9 +107,8 @@ def check(
     from grammar.bench.slips import KINDS
     from support.files.discovery import IngestError
 
-    check_files(json_file)
     roots = programs_or_ours(paths)
-    record: dict[str, Any] = {"bench": "check"}
+    record: dict[str, Any] = {}
     with as_input_errors(IngestError):
         if speed:
             with progress_bar("measuring", steps()) as advance:
@@ -68,71 +118,4 @@ def check(
                 record["planted"] = measure_planted(
                     roots, planted, seed, KINDS[damage], missing=missing, on_step=advance
                 )
-    write_json(record, json_file, indent=1)
-    _print(record)
-    return FINE
-
-
-def _print(record: Mapping[str, Any]) -> None:
-    console = Console(highlight=False)
-    if "s_per_mb" in record:
-        _print_speed(console, record)
-    if "planted" in record:
-        _print_planted(console, record["planted"])
-
-
-def _print_speed(console: Console, record: Mapping[str, Any]) -> None:
-    counts = record["findings"]
-    found = ", ".join(
-        counted(counts[word], word) for word in ("error", "warning", "note") if word in counts
-    )
-    console.print(
-        f"{counted(record['files'], 'file')} of {counted(record['projects'], 'project')}, "
-        f"{record['bytes'] / MB:.2f} MB; {found or 'no findings'}; Python {record['python']}",
-        soft_wrap=True,
-    )
-    console.print(
-        figures(
-            ("figure", "", "aim"),
-            [
-                ("first check", f"{record['s_per_mb']:.2f} s/MB", "1 s/MB"),
-                ("nothing changed", f"{record['unchanged_s_per_mb']:.3f} s/MB", ""),
-                ("one file changed", _seconds(record["one_changed_seconds"]), "0.3 s"),
-            ],
-        )
-    )
-    console.print(phases_table(record))
-
-
-def _print_planted(console: Console, planted: Mapping[str, Any]) -> None:
-    for title, rows in (
-        ("planted mistakes", [*planted["kinds"], {"kind": "all", **planted}]),
-        ("misspelt names", planted["names"]),
-    ):
-        if rows:
-            console.print(
-                figures(
-                    (title, "planted", "found", "in place", "findings, median", "p95", "most"),
-                    [(row["kind"], *(plain(row[n]) for n in _PLANTED_FIGURES)) for row in rows],
-                )
-            )
-    console.print(f"findings each in the median file: {plain(planted['median_file'])}")
-    before = planted["unplanted"]
-    console.print(
-        figures(
-            ("before planting", "findings", "per 1,000 lines", "for what is missing"),
-            [
-                (
-                    code,
-                    f"{count:,}",
-                    f"{1000 * count / before['lines']:.2f}",
-                    f"{before['caused'].get(code, 0):,}",
-                )
-                for code, count in before["codes"].items()
-            ],
-        )
-    )
-
-
-def _seconds(value: float | None) -> str:
-    return "–" if value is None else f"{value:.2f} s"
+    return record

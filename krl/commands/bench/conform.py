@@ -8,13 +8,13 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from krl.errors import FINE, InputError, as_input_errors
+from krl.errors import FINE, InputError, as_input_errors, say
 from krl.extras import ARM, expected_extras
 from krl.running.run_options import Executor
 from krl.terminal.options import JobsOption, JsonOption, all_cores
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import figures
+from krl.terminal.text_table import print_figures
 
 _SEED = 1
 
@@ -126,11 +126,9 @@ def _removals(json_file: Path | None, jobs: int) -> int:
     with progress_bar("removing features", len(cases)) as bar:
         record = removals_record(try_removals(cases, jobs, bar))
     write_json({"bench": "conform", "removed": record}, json_file)
-    console = Console(highlight=False)
     for one in record["unnoticed"]:
-        text = f"Passes without {one['feature']}: {one['case']}"
-        console.print(text, markup=False, soft_wrap=True)
-    console.print(
+        say(f"Passes without {one['feature']}: {one['case']}")
+    Console(highlight=False).print(
         f"{record['removed']:,} times a feature that its title names was removed from a case; "
         f"{len(record['unnoticed']):,} times it passed nevertheless"
     )
@@ -146,46 +144,42 @@ def _rows(drawn: Mapping[str, Any]) -> str:
 
 
 def _print_mutants(drawn: Mapping[str, Any]) -> None:
-    console = Console(highlight=False)
     fates = ("red", "soft", "survived", "equivalent", "invalid")
-    table = figures(("mutants of", "drawn", *fates, "red"))
     rows = []
     for one in drawn["seeds"]:
         rows.append((f"seed {one['seed']}", one))
         rows += [(f"  {row['package']}", row) for row in one["packages"]]
     if len(drawn["seeds"]) > 1:
         rows += [(row["package"], row) for row in drawn["packages"]]
-    for name, row in (*rows, ("all", drawn)):
-        counts = (row["mutants"], *(row[fate] for fate in fates))
-        table.add_row(name, *(f"{one:,}" for one in counts), f"{row['share']:.1%}")
-    console.print(table)
-    console.print(
+    rows.append(("all", drawn))
+    print_figures(
+        ("mutants of", "drawn", *fates, "red"),
+        [
+            (name, *(f"{row[key]:,}" for key in ("mutants", *fates)), f"{row['share']:.1%}")
+            for name, row in rows
+        ],
         f"of {drawn['red']:,} red ones {drawn['by_profile']:,} only break laws of our simulator "
-        "(docs/motion.md), which rest on no rule of KRL"
-    )
-    console.print(
+        "(docs/motion.md), which rest on no rule of KRL",
         f"of {drawn['survived']:,} that survived, {drawn['unreached']:,} are on lines that no case "
-        f"runs; {drawn['unchanged']:,} change nothing that can be seen of the cases tried"
-    )
-    console.print(
+        f"runs; {drawn['unchanged']:,} change nothing that can be seen of the cases tried",
         f"{drawn['unsure']:,} that no case detects are on lines that only cases of unconfirmed "
-        "rules run"
+        "rules run",
+        f"aim: {drawn['aim']:.0%} of those that a case could notice red",
     )
-    console.print(f"aim: {drawn['aim']:.0%} of those that a case could notice red")
 
 
 def _print(record: Mapping[str, Any]) -> None:
-    console = Console(highlight=False)
-    table = figures(("faults in", "planted", "found", "by a failure", "share"))
-    every = {"group": "all", **record}
-    for row in (*record["groups"], every):
-        counts = (row["mutants"], row["killed"], row["failing"])
-        table.add_row(row["group"], *(f"{one:,}" for one in counts), f"{row['share']:.1%}")
-    console.print(table)
-    console.print(
+    keys = ("mutants", "killed", "failing")
+    print_figures(
+        ("faults in", "planted", "found", "by a failure", "share"),
+        [
+            (row["group"], *(f"{row[key]:,}" for key in keys), f"{row['share']:.1%}")
+            for row in (*record["groups"], {"group": "all", **record})
+        ],
+    )
+    say(
         f"{record['cases_per_s']:,.1f} cases a second ({record['cases']:,} cases, "
-        f"{record['executor']}, robot {record['robot']}); aim {record['aim']:.0%} of faults found",
-        soft_wrap=True,
+        f"{record['executor']}, robot {record['robot']}); aim {record['aim']:.0%} of faults found"
     )
     for one in record["survivors"]:
-        console.print(f"Not found: {one['group']}: {one['fault']}", markup=False, soft_wrap=True)
+        say(f"Not found: {one['group']}: {one['fault']}")

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
-from rich.console import Console
 from rich.markup import escape
 
 from krl.commands.bench.growth_entries import ENTRIES
@@ -20,7 +19,7 @@ from krl.errors import FINE, InputError
 from krl.terminal.options import JobsOption, JsonOption, all_cores
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import figures
+from krl.terminal.text_table import print_figures
 from support.files.untrusted import json_of, read_text
 
 if TYPE_CHECKING:
@@ -126,28 +125,27 @@ def _row(entry: str, shape: str, found: Growth | None) -> dict[str, Any]:
 
 
 def _print(rows: list[dict[str, Any]]) -> None:
-    console = Console(highlight=False)
     steep = [
         row
         for row in rows
         if any(slope is None or slope > _AIM for slope in (row["time_slope"], row["memory_slope"]))
     ]
-    table = figures(("command: shape", "time", "memory", "largest", "seconds", "peak"))
-    for row in sorted(
-        rows, key=lambda row: -(9.0 if row["time_slope"] is None else row["time_slope"])
-    )[: max(10, len(steep))]:
-        last = row["costs"][-1]
-        table.add_row(
-            escape(f"{row['entry']}: {row['shape']}"),
-            _slope(row["time_slope"]),
-            _slope(row["memory_slope"]),
-            f"{last['size'] / 1_000:,.0f} kB",
-            f"{last['seconds']:.2f}",
-            f"{last['peak'] / 1e6:,.0f} MB",
-        )
-    console.print(table)
-    console.print(
-        f"{len(rows) - len(steep)} of {len(rows)} grow with an exponent of at most {_AIM}."
+    rows = sorted(rows, key=lambda row: -(9.0 if row["time_slope"] is None else row["time_slope"]))
+    print_figures(
+        ("command: shape", "time", "memory", "largest", "seconds", "peak"),
+        [
+            (
+                escape(f"{row['entry']}: {row['shape']}"),
+                _slope(row["time_slope"]),
+                _slope(row["memory_slope"]),
+                f"{last['size'] / 1_000:,.0f} kB",
+                f"{last['seconds']:.2f}",
+                f"{last['peak'] / 1e6:,.0f} MB",
+            )
+            for row in rows[: max(10, len(steep))]
+            for last in row["costs"][-1:]
+        ],
+        f"{len(rows) - len(steep)} of {len(rows)} grow with an exponent of at most {_AIM}.",
     )
 
 

@@ -4,13 +4,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
-from krl.errors import FINE, as_input_errors
+from krl.commands.bench.bench_command import Record, bench
+from krl.errors import as_input_errors
 from krl.terminal.options import JobsOption, JsonOption, all_cores, negatives_or_ours
-from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import figures, plain
+from krl.terminal.text_table import plain, print_figures
 
 _PROGRAMS = Path("corpus", "programs")
 _AIMS = (
@@ -29,9 +28,18 @@ _AIMS = (
 )
 
 
+def _print(record: Record) -> None:
+    rows = [(name, aim, plain(record[name])) for name, aim in _AIMS]
+    print_figures(("figure", "aim", "reached"), rows)
+    shown = ("mutants", "detected", "rule_top1", "item_top1", "repair_top1", "repair_top5")
+    rows = [(kind, *(plain(row[n]) for n in shown)) for kind, row in record["by_kind"].items()]
+    print_figures(("taken out", *(n.replace("_top", " ") for n in shown)), rows)
+
+
+@bench(_print)
 def mutation(
     paths: Annotated[list[Path] | None, typer.Argument(metavar="[PATH]...")] = None,
-    json_file: JsonOption = None,
+    _json_file: JsonOption = None,
     grammar: Path | None = None,
     negatives: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
     singles: Annotated[int, typer.Option(min=0)] = 0,
@@ -39,7 +47,7 @@ def mutation(
     seed: int = 1,
     cache: Annotated[Path | None, typer.Option(metavar="DIR")] = None,
     jobs: JobsOption = None,
-) -> int:
+) -> Record:
     """Measure the survey: remove parts of the grammar, and see whether it proposes them again.
 
     Options:
@@ -59,26 +67,15 @@ def mutation(
     from recovery.negatives.negatives import NegativeError
     from support.files.discovery import IngestError
 
-    check_files(json_file)
     with as_input_errors(GrammarError, IngestError, NegativeError):
         whole = read_file(grammar or GRAMMAR)
         material = material_for(whole, paths or [_PROGRAMS], negatives_or_ours(negatives), seed)
         chosen = choose_damaged(whole, singles, multiple, seed)
         with progress_bar("assessing", len(chosen)) as bar:
             record = assess_all(material, chosen, jobs=all_cores(jobs), cache=cache, on_done=bar)
-    record = {
-        "bench": "mutation",
+    return {
         "grammar": (grammar or GRAMMAR).name,
         "shown": len(material.shown),
         "held_out": len(material.held_out),
         **record,
     }
-    write_json(record, json_file, indent=1)
-    console = Console(highlight=False)
-    console.print(
-        figures(("figure", "aim", "reached"), [(n, aim, plain(record[n])) for n, aim in _AIMS])
-    )
-    shown = ("mutants", "detected", "rule_top1", "item_top1", "repair_top1", "repair_top5")
-    rows = [(kind, *(plain(row[n]) for n in shown)) for kind, row in record["by_kind"].items()]
-    console.print(figures(("taken out", *(n.replace("_top", " ") for n in shown)), rows))
-    return FINE

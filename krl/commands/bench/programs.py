@@ -10,7 +10,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from krl.errors import FINDINGS, FINE, one_line
+from krl.errors import FINDINGS, FINE, one_line, say
 from krl.running.project_sources import sources_below
 from krl.running.run_options import ExecutorOption, Robot
 from krl.terminal.options import (
@@ -141,7 +141,7 @@ def programs(
             write_json(record(), json_file, indent=1)
             _print_origin(console, done)
     write_json(last := record(), json_file, indent=1)
-    _print_summary(console, last)
+    _print_summary(last)
     return FINDINGS if "crash" in last["results"] else FINE
 
 
@@ -159,7 +159,7 @@ def _print_origin(console: Console, done: "SurveyedOrigin") -> None:
     if not done.rows:
         return
     damage = f" ({done.origin.damage})" if done.origin.damage else ""
-    console.print(one_line(done.origin.name + damage), soft_wrap=True, markup=False)
+    say(done.origin.name + damage)
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
     table.add_column("program")
     table.add_column("ran")
@@ -184,32 +184,29 @@ def _print_origin(console: Console, done: "SurveyedOrigin") -> None:
     console.print(table)
     faults = list(dict.fromkeys(fault for row in done.rows for fault in row["own_faults"]))
     for fault in faults[:_MOST_FAULTS]:
-        console.print(f"own fault: {one_line(fault)}", soft_wrap=True, markup=False)
+        say(f"own fault: {fault}")
     if len(faults) > _MOST_FAULTS:
         console.print(f"own fault: {len(faults) - _MOST_FAULTS:,} more lines")
 
 
-def _print_summary(console: Console, record: Mapping[str, Any]) -> None:
+def _print_summary(record: Mapping[str, Any]) -> None:
     rows = record["programs"]
-    console.print(
+    say(
         f"{len(rows):,} main programs on the robot {record['robot']}, {record['executor']}; "
-        f"{len(record['unread']):,} files that cannot be read",
-        soft_wrap=True,
+        f"{len(record['unread']):,} files that cannot be read"
     )
     counts = record["results"]
     counted = [f"{words}: {counts[name]:,}" for name, words in _RESULTS.items() if name in counts]
-    console.print("; ".join(counted), soft_wrap=True)
+    say("; ".join(counted))
     if rows:
         moved, served = (record[name] / len(rows) for name in ("moved", "served"))
-        console.print(
+        say(
             f"{moved:.0%} executed a motion, {served:.0%} ended or serve for ever, "
-            f"{record['own_faults'] / len(rows):.0%} have a fault of their own",
-            soft_wrap=True,
+            f"{record['own_faults'] / len(rows):.0%} have a fault of their own"
         )
     for one in record["damages"] if len(record["damages"]) > 1 else ():
         moved, served = (one[name] / one["programs"] for name in ("moved", "served"))
-        console.print(
+        say(
             f"{one['damage'] or 'not damaged'}: {one['programs']:,} programs, {moved:.0%} executed "
-            f"a motion, {served:.0%} ended or serve for ever",
-            soft_wrap=True,
+            f"a motion, {served:.0%} ended or serve for ever"
         )

@@ -5,14 +5,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 
-from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.errors import FINDINGS, FINE, InputError, one_line, say
 from krl.running.project_sources import sources_below
 from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import figures
+from krl.terminal.text_table import print_figures
 from reports.rendering.number_format import counted
 
 _MOST_REASONS = 8
@@ -75,13 +74,11 @@ def real_code(
 
 
 def _print(record: Mapping[str, Any]) -> None:
-    console = Console(highlight=False)
-    console.print(
+    say(
         f"{counted(record['files'], 'file')}, {len(record['unread']):,} of them not readable; "
-        f"{counted(record['routines'], 'routine')}",
-        soft_wrap=True,
+        f"{counted(record['routines'], 'routine')}"
     )
-    shares = figures(("of the routines", "", ""))
+    shares = []
     for name, words in (
         ("checked", "check without an error"),
         ("links", "of these name nothing that no file has"),
@@ -90,21 +87,21 @@ def _print(record: Mapping[str, Any]) -> None:
         ("ran", "ran"),
     ):
         of = record["routines"] if name in ("checked", "ran") else record["checked"]
-        shares.add_row(words, f"{record[name]:,}", _share(record[name], of))
-    console.print(shares)
-    ran = figures(("of those that ran", *record["executors"]))
+        shares.append((words, f"{record[name]:,}", _share(record[name], of)))
+    print_figures(("of the routines", "", ""), shares)
+    ran = []
     for ending, words in _ENDINGS:
         counts = [record["endings"][name].get(ending, 0) for name in record["executors"]]
         if any(counts):
-            ran.add_row(words, *(f"{count:,}  {_share(count, record['ran'])}" for count in counts))
-    console.print(ran)
+            ran.append((words, *(f"{count:,}  {_share(count, record['ran'])}" for count in counts)))
+    print_figures(("of those that ran", *record["executors"]), ran)
     for line in _reasons(record["trials"]):
-        console.print(line, soft_wrap=True, markup=False)
-    console.print(f"{record['differences']:,} routines on which executors differ", soft_wrap=True)
+        typer.echo(line)
+    say(f"{record['differences']:,} routines on which executors differ")
     for trial in record["trials"]:
         for name, text in (trial["differences"] or {}).items():
             place = f"{trial['path']}:{trial['line']} {trial['routine']}"
-            console.print(one_line(f"{place}, {name}: {text}"), soft_wrap=True, markup=False)
+            say(f"{place}, {name}: {text}")
 
 
 def _reasons(trials: Sequence[Mapping[str, Any]]) -> Iterator[str]:

@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import Annotated, Any, Final
 
 import typer
-from rich.console import Console
 
-from krl.errors import BAD_INPUT, FINE, InputError, as_input_errors, run
+from krl.errors import BAD_INPUT, FINE, InputError, as_input_errors, run, say
 from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import figures
+from krl.terminal.text_table import print_figures
 from support.measure.isolated import call_isolated
 from support.measure.speed import MB, machine
 
@@ -127,23 +126,24 @@ def _growth(rows: Sequence[Mapping[str, Any]]) -> dict[str, float]:
 
 
 def _print(record: Mapping[str, Any]) -> None:
-    console = Console(highlight=False)
-    table = figures(("command", "files", "MB", "CPU s", "s/MB", "peak memory", "page"))
-    for row in record["rows"]:
-        table.add_row(
-            row["command"],
-            f"{row['files']:,}",
-            f"{row['bytes'] / MB:,.0f}",
-            f"{row['seconds']:,.1f}",
-            f"{row['seconds'] * MB / row['bytes']:.2f}",
-            f"{row['peak_bytes'] / MB:,.0f} MB",
-            "–" if row["page_bytes"] is None else f"{row['page_bytes'] / MB:,.1f} MB",
-        )
-    console.print(table)
+    print_figures(
+        ("command", "files", "MB", "CPU s", "s/MB", "peak memory", "page"),
+        [
+            (
+                row["command"],
+                f"{row['files']:,}",
+                f"{row['bytes'] / MB:,.0f}",
+                f"{row['seconds']:,.1f}",
+                f"{row['seconds'] * MB / row['bytes']:.2f}",
+                f"{row['peak_bytes'] / MB:,.0f} MB",
+                "–" if row["page_bytes"] is None else f"{row['page_bytes'] / MB:,.1f} MB",
+            )
+            for row in record["rows"]
+        ],
+    )
     for name in _COMMANDS:
         if f"{name}_exponent" in record:
-            console.print(
+            say(
                 f"{name}: exponent of CPU time over size {record[f'{name}_exponent']:.2f}, last to "
-                f"first memory {record[f'{name}_memory_growth']:.2f}",
-                soft_wrap=True,
+                f"first memory {record[f'{name}_memory_growth']:.2f}"
             )

@@ -1,20 +1,20 @@
 """`krl bench vm`: how fast the executors compute, beside other languages."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from statistics import median
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from krl.errors import FINE, InputError, as_input_errors
+from krl.commands.bench.bench_command import Record, bench
+from krl.errors import InputError, as_input_errors, say
 from krl.terminal.options import JsonOption
-from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import figures
+from krl.terminal.text_table import plain, print_figures
 
 _HEADINGS = {
     "tree": "tree",
@@ -36,11 +36,52 @@ _AIMS = (
 )
 
 
+def _print(record: Record) -> None:
+    lua = record["lua"] or "no Lua 5.4 here"
+    missing = "" if record["native"] else "; the machine in C was not built"
+    say(f"Python {record['python']}, {lua}{missing}")
+    shown = [name for name in _HEADINGS if any(row["ns"][name] for row in record["kernels"])]
+    print_figures(
+        ("µs", "N", *map(_HEADINGS.__getitem__, shown)),
+        [
+            (row["name"], f"{row['amount']:,}", *(_figure(row["ns"][name]) for name in shown))
+            for row in record["kernels"]
+        ],
+    )
+    summary = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading in ("geometric mean", "", "aim"):
+        summary.add_column(heading, justify="right" if heading == "" else "left", no_wrap=True)
+    for key, label, aim in _AIMS:
+        summary.add_row(label, plain(record[key], "{:,.2f} times"), aim)
+    for name, costs in record["request_us"].items():
+        listed = ", ".join(f"{cost:.1f} µs to {kind}" for kind, cost in costs.items())
+        summary.add_row(f"a request: {_HEADINGS[name]}", listed, "")
+    for name, times in record["controlled_vs_bare"].items():
+        label = f"time in `krl run`: {_HEADINGS[name]}"
+        summary.add_row(label, f"{times:.2f} times", "≤ 1.3 times")
+    Console(highlight=False).print(summary)
+    before = (f"{label} {ms:.1f} ms" for label, ms in _before_running(record["kernels"]))
+    say(f"before it runs: {', '.join(before)}")
+
+
+def _before_running(rows: Sequence[Record]) -> Iterator[tuple[str, float]]:
+    """Yield the time of each phase before the first statement of a kernel: medians in ms."""
+    yield "check", median(row["load_ms"] for row in rows)
+    yield "bytecode", median(row["translate_ms"] for row in rows)
+    for name in rows[0]["start_ms"]:
+        yield f"start of {_HEADINGS[name]}", median(row["start_ms"][name] for row in rows)
+
+
+def _figure(ns: float | None) -> str:
+    return "–" if ns is None else f"{ns / 1e3:,.{0 if ns >= 1e5 else 1}f}"
+
+
+@bench(_print)
 def vm(
     kernels: Annotated[str, typer.Option(metavar="NAMES")] = "",
     rounds: Annotated[int, typer.Option(min=1, max=100)] = 3,
-    json_file: JsonOption = None,
-) -> int:
+    _json_file: JsonOption = None,
+) -> Record:
     """Measure the executors: KRL kernels on each of them and in other languages; a request's cost.
 
     A kernel is NAME.src with DEFFCT INT WORK(N:IN); NAME.lua (a chunk that returns a function),
@@ -55,7 +96,6 @@ def vm(
     from interp.bench.executor_speed import MeasurementError, measure_executors, steps
     from interp.bench.kernels import HERE, kernels_in
 
-    check_files(json_file)
     is_folder = bool(kernels) and Path(kernels).is_dir()
     found = kernels_in(Path(kernels) if is_folder else HERE)
     if is_folder and not found:
@@ -69,48 +109,4 @@ def vm(
         )
     chosen = [found[name] for name in names]
     with as_input_errors(MeasurementError), progress_bar("measuring", steps(chosen)) as advance:
-        record = measure_executors(chosen, rounds, on_step=advance)
-    record = {"bench": "vm", **record}
-    write_json(record, json_file, indent=1)
-    _print(record)
-    return FINE
-
-
-def _print(record: Mapping[str, Any]) -> None:
-    console = Console(highlight=False)
-    lua = record["lua"] or "no Lua 5.4 here"
-    missing = "" if record["native"] else "; the machine in C was not built"
-    console.print(f"Python {record['python']}, {lua}{missing}", soft_wrap=True)
-    shown = [name for name in _HEADINGS if any(row["ns"][name] for row in record["kernels"])]
-    table = figures(("µs", "N", *map(_HEADINGS.__getitem__, shown)))
-    for row in record["kernels"]:
-        times = (_figure(row["ns"][name]) for name in shown)
-        table.add_row(row["name"], f"{row['amount']:,}", *times)
-    console.print(table)
-    summary = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("geometric mean", "", "aim"):
-        summary.add_column(heading, justify="right" if heading == "" else "left", no_wrap=True)
-    for key, label, aim in _AIMS:
-        value = record[key]
-        summary.add_row(label, "–" if value is None else f"{value:,.2f} times", aim)
-    for name, costs in record["request_us"].items():
-        listed = ", ".join(f"{cost:.1f} µs to {kind}" for kind, cost in costs.items())
-        summary.add_row(f"a request: {_HEADINGS[name]}", listed, "")
-    for name, times in record["controlled_vs_bare"].items():
-        label = f"time in `krl run`: {_HEADINGS[name]}"
-        summary.add_row(label, f"{times:.2f} times", "≤ 1.3 times")
-    console.print(summary)
-    before = (f"{label} {ms:.1f} ms" for label, ms in _before_running(record["kernels"]))
-    console.print(f"before it runs: {', '.join(before)}", soft_wrap=True)
-
-
-def _before_running(rows: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, float]]:
-    """Yield the time of each phase before the first statement of a kernel: medians in ms."""
-    yield "check", median(row["load_ms"] for row in rows)
-    yield "bytecode", median(row["translate_ms"] for row in rows)
-    for name in rows[0]["start_ms"]:
-        yield f"start of {_HEADINGS[name]}", median(row["start_ms"][name] for row in rows)
-
-
-def _figure(ns: float | None) -> str:
-    return "–" if ns is None else f"{ns / 1e3:,.{0 if ns >= 1e5 else 1}f}"
+        return measure_executors(chosen, rounds, on_step=advance)

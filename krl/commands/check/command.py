@@ -12,7 +12,7 @@ import typer
 
 from krl.baseline_file import baseline_place, read_baseline
 from krl.commands.check.output import Format, sum_up, write
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say
 from krl.extras import expected_extras
 from krl.project_settings import Settings, read_settings, settings_of, settings_places
 from krl.terminal.options import JobsOption
@@ -176,7 +176,7 @@ def _watch(
             if not is_again:
                 raise
             # files are gone or half written for a moment
-            typer.echo(one_line(f"krl: {error}"), err=True)
+            say(f"krl: {error}", err=True)
 
 
 def _agreed(paths: Sequence[Path], file: Path | None, has_none: bool) -> Settings:

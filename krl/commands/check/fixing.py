@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from krl.errors import as_input_errors, one_line, shown
+from krl.errors import as_input_errors, say, shown
 from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
@@ -53,12 +53,12 @@ def fix_files(
                 _show(found.path, file.text, done.text)
                 continue
             if found.member is not None:
-                typer.echo(one_line(f"{found.path}: not mended: it is in an archive"), err=True)
+                say(f"{found.path}: not mended: it is in an archive", err=True)
                 continue
             write_atomic(found.file, file.decoded.replaced(file.data, done.text))
             for one in done.mended:
                 place = f"{one.path}:{one.region.line}:{one.region.column}"
-                typer.echo(one_line(f"{place}: mended {one.code}: {one.message}"), err=True)
+                say(f"{place}: mended {one.code}: {one.message}", err=True)
     return is_changed
 
 

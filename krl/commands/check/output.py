@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from krl.commands.check.reading_order import reading_order
-from krl.errors import one_line
+from krl.errors import one_line, say
 from krl.terminal.output_files import json_list_pieces, json_pieces, write_pieces
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ def sum_up(found: "Mapping[Severity, int]", report: "CheckReport", more: str = "
     from grammar.diagnostics.rendering import summary
 
     for skipped in report.skipped[:_SKIPPED_SHOWN]:
-        typer.echo(one_line(f"skipped {skipped.path}: {skipped.reason}"), err=True)
+        say(f"skipped {skipped.path}: {skipped.reason}", err=True)
     rest = len(report.skipped) - _SKIPPED_SHOWN
     if rest > 0:
         typer.echo(f"skipped {rest:,} more", err=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NoReturn
 import typer
 
 from krl.commands.conform.results import Outputs, print_summary
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line, shown
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say, shown
 from krl.extras import ARM, need
 from krl.terminal.output_files import write_json
 from krl.terminal.progress import progress_bar
@@ -51,7 +51,7 @@ def run_and_report(
     print_summary(results, seconds, bad)
     if left:
         while_ = f" while running {', '.join(running)}" if running else ""
-        typer.echo(one_line(f"terminated{while_}: {len(left):,} cases are not done"), err=True)
+        say(f"terminated{while_}: {len(left):,} cases are not done", err=True)
         return TERMINATED
     return FINDINGS if any(one.verdict in bad for one in results) else FINE
 

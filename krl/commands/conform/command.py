@@ -12,7 +12,7 @@ from krl.commands.conform.exchange import compare_parsers, export_cases, import_
 from krl.commands.conform.metamorphic import check_laws
 from krl.commands.conform.planted_fault import planted
 from krl.commands.conform.results import Outputs
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say
 from krl.extras import expected_extras, need
 from krl.terminal.options import JobsOption, JsonOption, scheduler_option
 from krl.terminal.output_files import check_files
@@ -92,7 +92,7 @@ def conform(
             )
         with nullcontext("") if fault is None else planted(fault) as name:
             if name:
-                typer.echo(one_line(f"planted: {name}"))
+                say(f"planted: {name}")
             more = {"selection": words, "fault": name}
             at_once = jobs if fault is None else 1
             given = (cases, executor, robot, outputs, at_once, scheduler)
@@ -118,6 +118,6 @@ def _lint(words: Iterable[str]) -> int:
             raise InputError(f"{folder}: no such folder of cases")
     found = [fault for folder in folders for fault in lint(folder)]
     for fault in found:
-        typer.echo(one_line(str(fault)))
+        say(str(fault))
     typer.echo(f"{len(found)} faults" if found else "the cases are well formed", err=True)
     return FINDINGS if found else FINE

@@ -7,15 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
-from rich.console import Console
 
 from krl.commands.conform.case_runs import TERMINATED, chosen_cases, run_on
 from krl.commands.conform.results import Outputs, print_summary
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say
 from krl.extras import ARM, need
 from krl.terminal.output_files import check_files
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import figures
+from krl.terminal.text_table import print_figures
 
 if TYPE_CHECKING:
     from conformance.evaluation.case_result import CaseResult
@@ -38,7 +37,7 @@ def export_cases(words: Sequence[str], jobs: int | None, scheduler: str | None) 
         write_export(path, results, metadata.version("krl-workbench"))
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error
-    typer.echo(one_line(f"{path}: {len(results)} cases, their expectations, a reference result"))
+    say(f"{path}: {len(results)} cases, their expectations, a reference result")
     return FINDINGS if any(one.verdict == "fail" for one in results) else FINE
 
 
@@ -62,17 +61,28 @@ def compare_parsers(words: Sequence[str], wanted: Sequence[str], outputs: Output
 
 
 def _print_comparison(results: "Sequence[CaseResult]", names: Sequence[str]) -> None:
-    table = figures(("cases", "number", *names))
     suites = dict.fromkeys(one.case.suite for one in results)
     rows = [(suite, [one for one in results if one.case.suite == suite]) for suite in suites]
     kinds = (("to be read", False), ("to be refused", True), ("all", None))
     for kind, wanted in kinds:
         chosen = [one for one in results if wanted in (None, one.case.expects_syntax_error)]
         rows.append((kind, chosen))
-    for name, own in rows:
-        passed = (sum(one.results[at].verdict == "pass" for one in own) for at in range(len(names)))
-        table.add_row(name, f"{len(own):,}", *(f"{one:,}" for one in passed))
-    Console(highlight=False).print(table)
+    print_figures(
+        ("cases", "number", *names),
+        [
+            (
+                name,
+                f"{len(own):,}",
+                *(f"{_passed(own, place):,}" for place in range(len(names))),
+            )
+            for name, own in rows
+        ],
+    )
+
+
+def _passed(results: "Sequence[CaseResult]", place: int) -> int:
+    """Return how many cases the parser at a place passes."""
+    return sum(one.results[place].verdict == "pass" for one in results)
 
 
 def import_recording(words: Sequence[str], outputs: Outputs, bad: Collection[str]) -> int:
@@ -93,7 +103,7 @@ def import_recording(words: Sequence[str], outputs: Outputs, bad: Collection[str
         cases = find_cases()
         results, wrong = evaluate_recording(recording, cases)
     for text in wrong:
-        typer.echo(one_line(text), err=True)
+        say(text, err=True)
     if not results:
         raise InputError(f"{words[0]}: none of its cases can be evaluated")
     seconds = time.perf_counter() - begun
@@ -102,7 +112,7 @@ def import_recording(words: Sequence[str], outputs: Outputs, bad: Collection[str
     left = [case.name for case in cases if case.phase == "run" and case.name not in there]
     more = {"recording": recording.controller, "not_recorded": left}
     outputs.write(results, [recording.controller], robots, seconds, more)
-    typer.echo(one_line(f"recorded on {recording.controller}"))
+    say(f"recorded on {recording.controller}")
     for answer in answers(results):
         rest = f"against it: {', '.join(answer.against)}" if answer.against else "none against it"
         typer.echo(f"{answer.rule}: {answer.met} cases as we read it, {rest}")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from krl.errors import FINDINGS, FINE, one_line
+from krl.errors import FINDINGS, FINE, say
 from krl.extras import ARM, need
 from krl.terminal.options import all_cores
 from krl.terminal.output_files import write_json
@@ -37,7 +37,7 @@ def check_laws(
         broken = f", {len(one.broken)} broken" if one.broken else ""
         typer.echo(f"{one.law.name:26} {one.held:5,} of {one.applied:5,} held{broken}")
         for attempt in one.broken[:_SHOWN]:
-            typer.echo(one_line(f"  {attempt.program}: {attempt.difference}"))
+            say(f"  {attempt.program}: {attempt.difference}")
     applied, held = (sum(getattr(one, name) for one in found) for name in ("applied", "held"))
     typer.echo(f"{len(found)} laws on {applied:,} programs: {held:,} held")
     return FINDINGS if held < applied else FINE

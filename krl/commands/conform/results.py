@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from krl.errors import one_line, shown
+from krl.errors import one_line, say, shown
 from krl.terminal.output_files import write_json
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Outputs:
             if self.html is not None:
                 from reports.conformance.conform_page import write_conformance_page
 
-                typer.echo(one_line(f"page: {write_conformance_page(record, self.html)}"))
+                say(f"page: {write_conformance_page(record, self.html)}")
             write_json(record, self.json_file)
         if self.junit is not None:
             from conformance.records.junit import write_junit

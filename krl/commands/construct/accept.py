@@ -16,7 +16,7 @@ from krl.construct_ledger import (
     print_evaluation,
     print_refusals,
 )
-from krl.errors import FINDINGS, FINE, InputError, one_line
+from krl.errors import FINDINGS, FINE, InputError, say
 from krl.terminal.options import JobsOrOneOption, negatives_or_ours
 from krl.terminal.progress import progress_bar
 from reports.rendering.number_format import counted
@@ -136,7 +136,7 @@ def replay(
         if check:
             found = list(findings(ledger, preliminary, GRAMMAR))
             for line in found:
-                typer.echo(one_line(line))
+                say(line)
             if not found:
                 constructs = counted(len(ledger.accepted), "construct")
                 typer.echo(f"{GRAMMAR.as_posix()} is the replay of {constructs}")
@@ -148,9 +148,7 @@ def replay(
         typer.echo(text, nl=False)
     else:
         write_atomic(out, text)
-        typer.echo(
-            one_line(f"wrote {out.as_posix()}: the replay of {counted(len(chosen), 'construct')}")
-        )
+        say(f"wrote {out.as_posix()}: the replay of {counted(len(chosen), 'construct')}")
     return FINE
 
 

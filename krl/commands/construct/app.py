@@ -8,7 +8,7 @@ import typer
 from krl.commands.construct.accept import accept, evaluate, replay
 from krl.commands.construct.oracle import oracle
 from krl.construct_ledger import LEDGER, PRELIMINARY, checkout_or_packaged, expected_errors
-from krl.errors import FINE, InputError, one_line
+from krl.errors import FINE, InputError, say
 from krl.terminal.options import Commands
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.text_table import print_columns
@@ -106,7 +106,7 @@ def propose(
         record = json_of(read_bytes(survey).decode("utf-8"))
         if not isinstance(record, dict):
             raise TypeError("a survey is an object")
-        typer.echo(one_line(f"wrote {write(record, cluster, number, out).as_posix()}"))
+        say(f"wrote {write(record, cluster, number, out).as_posix()}")
     except FileNotFoundError as error:
         raise InputError(f"{survey}: no such survey; run krl recover first") from error
     except (GrammarError, ValueError, KeyError, TypeError, AttributeError) as error:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.construct_ledger import LEDGER, checkout_or_packaged, expected_errors
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors, one_line
+from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import print_columns
 
@@ -63,9 +63,7 @@ def oracle(
                 if not programs:
                     raise InputError("nothing waits for a verdict: name constructs")
                 write_bundle(programs, bundle)
-                typer.echo(
-                    one_line(f"wrote {len(programs)} programs and a form to {bundle.as_posix()}")
-                )
+                say(f"wrote {len(programs)} programs and a form to {bundle.as_posix()}")
                 return FINE
     if not chosen:
         typer.echo("nothing waits for a verdict")
@@ -92,9 +90,9 @@ def _ask(constructs: "Sequence[Construct]", asked: "Oracle") -> int:
         new = verdict.construct
         if new != construct and new.file is not None:
             changes[new.file] = text_of(new).encode()
-            typer.echo(one_line(f"{new.id}: {new.evidence.verdict}"))
+            say(f"{new.id}: {new.evidence.verdict}")
         for finding in verdict.findings:
-            typer.echo(one_line(f"{new.id}: differs: {finding}"))
+            say(f"{new.id}: differs: {finding}")
         findings += len(verdict.findings)
     write_together(changes)
     typer.echo(f"{len(changes)} verdicts written, {findings} answers differ from the ledger")
