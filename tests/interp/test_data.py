@@ -9,7 +9,7 @@ from grammar.semantics.predefined import System
 from grammar.syntax.source import Source
 from interp.port.events import Recorder
 from interp.port.executor import Executor
-from interp.port.requests import EmptyError, End, Fail, Invoke, Read, Write
+from interp.port.requests import EmptyError, End, Fail, Read, Write
 from interp.program.load import Limits, load
 from interp.tree.memory import system_values
 from interp.values.faults import Fault, LinkError, fault
@@ -66,40 +66,6 @@ def test_full_stack_is_noted(go: Run) -> None:
     ran = go(body("ON_ERROR_PROCEED\nSub()\nI=1", "INT I") + "DEF Sub()\nEND\n", Limits(depth=0))
     assert [1424] == [one.value for one in ran.asked(Write)]
     assert [1] == ran.values("I")
-
-
-def test_signals(go: Run) -> None:
-    """A signal is the input or output it stands for; several bits are asked for at once."""
-    ran = go(
-        "DEF main()\nLAMP=TRUE\nGROUP=5\nFLAG=LAMP\nEND\n",
-        main_dat=(
-            "DEFDAT main\nSIGNAL LAMP $OUT[3]\nSIGNAL GROUP $OUT[4] TO $OUT[7]\nBOOL FLAG\nENDDAT\n"
-        ),
-    )
-    assert [("$OUT", 3), ("$OUT", 4, "TO", 7)] == [one.path for one in ran.asked(Write)]
-    assert [("$OUT", 3)] == [one.path for one in ran.asked(Read)]
-    assert [True] == ran.values("FLAG")
-
-
-def test_world_by_reference(go: Run) -> None:
-    """A system variable passed :OUT is read and written where the parameter is."""
-    ran = go(body("Set($OUT[2])", "INT I") + "DEF Set(B:OUT)\nBOOL B\nB=NOT B\nEND\n")
-    assert [(("$OUT", 2), True, 1)] == [
-        (one.path, one.value, one.at.depth) for one in ran.asked(Write)
-    ]
-
-
-def test_system_values_are_converted(go: Run) -> None:
-    """What a system variable gets is of its type."""
-    writes = go(body("$VEL.CP=1\n$OV_PRO=50.4", "INT I")).asked(Write)
-    assert [1.0, 50] == [one.value for one in writes]
-    assert [float, int] == [type(one.value) for one in writes]
-
-
-def test_world_routines(go: Run) -> None:
-    """Routines that need the world are requests; what they change is assigned."""
-    ran = go(body("PULSE($OUT[4],TRUE,0.5)", "INT I"))
-    assert [("PULSE", (False, True, 0.5))] == [(o.name, o.arguments) for o in ran.asked(Invoke)]
 
 
 def test_errors_are_link_errors() -> None:

@@ -1,7 +1,7 @@
 """The port: requests at any depth, what is entered, evaluated and unwound."""
 
 from collections.abc import Callable
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import pytest
 
@@ -9,30 +9,21 @@ from interp.port import requests
 from interp.port.events import Recorder
 from interp.port.executor import Executor
 from interp.port.requests import (
-    CodeHandle,
     DeclareInterrupt,
     EmptyError,
     End,
     Fail,
     Halt,
-    Move,
-    MoveSpline,
     Path,
     Poll,
     Read,
     Resume,
-    SetTrigger,
-    SplineRange,
-    SplineStop,
-    SwitchSignal,
     Wait,
     Write,
 )
 from interp.values.faults import Fault, fault
 
 Make = Callable[..., Executor]
-Run = Callable[..., Any]
-
 INTERRUPT = (
     "DEF main()\nINT I\nI=1\nINTERRUPT DECL 3 WHEN $IN[1]==TRUE DO Stop(I)\n"
     "Work()\nI=I\nEND\n"
@@ -204,75 +195,6 @@ def test_action_without_its_routine(make: Make) -> None:
     failed = executor.advance()
     assert isinstance(failed, Fail)
     assert fault("uninitialised") == failed.fault
-
-
-def test_motion(go: Run) -> None:
-    """A motion has its target, its values and words as written, evaluated."""
-    ran = go(
-        "DEF main()\nPOS P\nP={X 1,Y 2,Z 3,A 0,B 0,C 0}\nPTP P C_PTP\nP.X=9\n"
-        "LIN_REL {X 5} #TOOL\nCIRC P,P,CA 90\nSLIN P WITH $VEL.CP=1+1 C_SPL\nEND\n"
-    )
-    ptp, rel, circ, slin = ran.asked(Move)
-    assert ("PTP", 1.0, ("C_PTP",)) == (ptp.kind, ptp.target.get("X"), ptp.criteria)
-    assert ("LIN_REL", 5.0, "TOOL") == (rel.kind, rel.target.get("X"), rel.reference)
-    assert (9.0, 90.0) == (circ.auxiliary.get("X"), circ.angle)
-    assert ((("$VEL", "CP"), 2.0),) == slin.values
-
-
-def test_spline(go: Run) -> None:
-    """A spline block is one request with all that stands in it."""
-    ran = go(
-        "DEF main()\nPOS P\nP={X 1,Y 2,Z 3,A 0,B 0,C 0}\nSPLINE WITH $VEL.CP=0.5\nSPL P\n"
-        "CONST_VEL START=5 ONSTART\nTRIGGER WHEN PATH=2 DELAY=0 DO $OUT[1]=TRUE\nSLIN P\n"
-        "STOP WHEN PATH=1 IF $IN[2]\nSPL P\nCONST_VEL END=-1\nENDSPLINE C_SPL\nEND\n"
-    )
-    (block,) = ran.asked(MoveSpline)
-    assert [Move, SplineRange, SetTrigger, Move, SplineStop, Move, SplineRange] == [
-        type(item) for item in block.items
-    ]
-    assert (4, 5, True) == (block.at.line, block.items[0].at.line, block.is_approximated)
-    assert (("$OUT", 1), True) == block.items[2].output
-
-
-def test_trigger(make: Make) -> None:
-    """What a trigger does is entered when it fires, with the values of that moment."""
-    executor = make(
-        "DEF main()\nTRIGGER WHEN DISTANCE=1 DELAY=-20 DO COUNT=COUNT+1\n"
-        "TRIGGER WHEN PATH=-10 DELAY=0 DO Sub() PRIO=-1\nHALT\nEND\nDEF Sub()\nEND\n",
-        main_dat="DEFDAT main\nINT COUNT=1\nENDDAT\n",
-    )
-    first, second = executor.advance(), executor.advance()
-    assert isinstance(first, SetTrigger)
-    assert isinstance(second, SetTrigger)
-    assert ("DISTANCE", 1.0, -20.0, None, None) == (
-        *(first.place_kind, first.place, first.delay),
-        *(first.output, first.priority),
-    )
-    assert ("PATH", -10.0, -1) == (second.place_kind, second.place, second.priority)
-    halted = executor.advance()
-    for trigger in (first, second):
-        executor.enter(trigger.action)
-        assert isinstance(executor.advance(), End)
-        assert halted == executor.advance()
-
-
-def test_cyclic_signal(make: Make) -> None:
-    """What ANIN ON computes is entered again and again [IOT-05]."""
-    executor = make(
-        "DEF main()\nANIN ON PRESSURE=2.0*SENSOR+1.0\nANIN OFF SENSOR\nEND\n",
-        main_dat="DEFDAT main\nREAL PRESSURE\nSIGNAL SENSOR $ANIN[1]\nENDDAT\n",
-    )
-    on = executor.advance()
-    assert isinstance(on, SwitchSignal)
-    assert ("ANIN", True, "SENSOR") == (on.keyword, on.is_on, on.name)
-    assert isinstance(on.cycle, CodeHandle)
-    executor.enter(on.cycle)
-    assert Read(requests.At("main.src", 2, 0), ("$ANIN", 1)) == executor.advance()
-    assert isinstance(executor.advance(0.5), End)
-    assert on == executor.advance()
-    off = executor.advance()
-    assert isinstance(off, SwitchSignal)
-    assert (False, "SENSOR") == (off.is_on, off.name)
 
 
 def test_values_are_not_shared(make: Make) -> None:

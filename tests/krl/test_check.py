@@ -2,8 +2,6 @@
 
 import io
 import json
-import os
-import subprocess
 import sys
 import threading
 from collections.abc import Iterator
@@ -161,12 +159,6 @@ def test_json_has_the_fields_of_the_design(capsys: pytest.CaptureFixture[str]) -
 
 
 @pytest.mark.usefixtures("programs")
-def test_nothing_found_is_an_empty_list(capsys: pytest.CaptureFixture[str]) -> None:
-    """JSON is complete also where there is nothing to say."""
-    assert [] == records(capsys, "C.src")
-
-
-@pytest.mark.usefixtures("programs")
 def test_sarif(capsys: pytest.CaptureFixture[str]) -> None:
     """SARIF 2.1.0 with a rule for each code."""
     check("--format", "sarif", ".")
@@ -261,20 +253,6 @@ def test_colours_on_a_terminal(programs: Path, monkeypatch: pytest.MonkeyPatch) 
     assert "\x1b[1;31merror KRL001:" in shown.replace("\x1b[1;31m: error", "\x1b[1;31merror")
 
 
-@pytest.mark.usefixtures("programs")
-def test_as_a_process() -> None:
-    """The installed command gives the status to the shell."""
-    done = subprocess.run(
-        [sys.executable, "-m", "krl", "check", "B.src", "--no-cache"],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, "PYTHONIOENCODING": "utf-8"},
-    )
-    assert (1, "") == (done.returncode, done.stderr.partition("1 file checked: 1 warning")[0])
-    assert "KRL401" in done.stdout
-
-
 BACKUP = {
     "KRC/R1/Program/work.src": "DEF WORK()\nOPEN(1, 2)\nSHUT(1)\nEND\n",
     "KRC/R1/TP/tools.src": (
@@ -297,21 +275,6 @@ def backup(elsewhere: Path) -> Path:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(text, encoding="utf-8")
     return elsewhere
-
-
-@pytest.mark.usefixtures("backup")
-@pytest.mark.parametrize("kind", ["backup", "backup.zip"])
-@pytest.mark.parametrize(
-    "entry", ["", "KRC", "KRC/R1", "KRC/R1/Program", "KRC/R1/Program/work.src"]
-)
-def test_one_project_from_any_entry(
-    capsys: pytest.CaptureFixture[str], kind: str, entry: str
-) -> None:
-    """A file is checked as part of its controller, however much of that is named."""
-    found = records(capsys, "--no-cache", f"{kind}/{entry}".rstrip("/"))
-    shown = [(one["path"], one["line"], one["code"], one["severity"]) for one in found]
-    whole = f"{kind}/KRC/R1/Program/work.src"
-    assert [(whole, *rest) for _, *rest in OF_WORK] == shown
 
 
 def test_entry_from_inside(

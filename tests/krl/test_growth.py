@@ -102,15 +102,6 @@ def test_the_terminal_shows_the_steps(
     assert f"Page: {tmp_path / 'out' / 'index.html'}" in said
 
 
-def test_a_second_run_gives_the_same(corpus: Path, ledger: Path, tmp_path: Path) -> None:
-    """From what the first one kept."""
-    found = []
-    for _ in range(2):
-        growth(corpus, "--constructs", ledger, "--out", tmp_path / "out")
-        found.append({k: v for k, v in record(tmp_path / "out").items() if k != "seconds"})
-    assert found[0] | {"generated": ""} == found[1] | {"generated": ""}
-
-
 #: Command lines that cannot be carried out, by what is wrong with them.
 WRONG = {
     "a missing place": ["{here}/nowhere"],

@@ -58,45 +58,6 @@ def test_a_damaged_record_is_reported(
     assert {"fuzz": "failed: fuzz.json there is damaged"} == steps_of(tmp_path)
 
 
-def test_a_damaged_history_hides_no_night(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Lines that are no runs are passed over, and the one before is compared with."""
-    (tmp_path / DATE).mkdir()
-    (tmp_path / DATE / "fuzz.json").write_text('{"differences": []}', encoding="utf-8")
-    old = json.dumps({"date": "2026-01-01", "fuzz": {"divergences": 3}})
-    damaged = f'{old}\n{"[" * 90_000}\n{{"date": \n\x00\x1b[31m\n'
-    (tmp_path / "h.jsonl").write_text(damaged, encoding="utf-8")
-    status, out = run(tmp_path, capsys, "fuzz")
-    told = "lines 2, 3, 4 are damaged and were skipped; compared with the run of 2026-01-01"
-    told = f"history {tmp_path / 'h.jsonl'}: {told}"
-    assert (0, [told, "fixed: fuzz: divergences 3 → 0"]) == (status, out[:-1])
-    for name in ("index.html", "summary.md"):
-        assert "2, 3, 4 are damaged" in (tmp_path / DATE / name).read_text(encoding="utf-8")
-
-
-def test_a_history_without_a_run_is_no_first_run(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """There was one, and nobody knows what has changed since."""
-    _step(monkeypatch, (0, ""))
-    (tmp_path / "h.jsonl").write_text('{"date": 7, "conform": []}\n', encoding="utf-8")
-    told = "line 1 is damaged and was skipped; no earlier run is left to compare with"
-    assert [f"history {tmp_path / 'h.jsonl'}: {told}"] == run(tmp_path, capsys, "recover")[1][:-1]
-
-
-def test_a_divergence_of_the_fuzzer_is_a_bad_night(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """A program on which executors diverge fails the nightly run, and is reported once."""
-    (tmp_path / DATE).mkdir()
-    found = {"programs": 9, "seed": 1, "differences": [{"program": 4, "executor": "vm"}]}
-    (tmp_path / DATE / "fuzz.json").write_text(json.dumps(found), encoding="utf-8")
-    status, out = run(tmp_path, capsys, "fuzz")
-    diverged = "failed: program 4 of the fuzzer diverges on vm: , where is expected"
-    assert (1, [diverged, "this is the first run"]) == (status, out[:-1])
-
-
 def test_a_night_that_goes_on_knows_how_its_steps_went(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

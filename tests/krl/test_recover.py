@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import zipfile
 from contextlib import redirect_stdout
 from dataclasses import dataclass
 from io import StringIO
@@ -176,17 +175,6 @@ def test_wrong_input_is_one_clear_line(
     assert [] == list(elsewhere.iterdir())
 
 
-def test_bad_files_among_good_ones_are_skipped(tmp_path: Path) -> None:
-    """Binary junk and a truncated archive cost nothing but themselves, and are named."""
-    corpus = lay(tmp_path / "corpus", fine=FINE, junk=bytes(range(256)) * 9)
-    (corpus / "cut.zip").write_bytes(b"PK\x03\x04 and no more")
-    assert 0 == recover(corpus, "--out", tmp_path / "out")
-    data = record(tmp_path / "out")
-    assert 1 == data["files"]
-    assert {"cut.zip", "junk.src"} == {s["path"].split("/")[-1] for s in data["skipped"]}
-    assert all(s["reason"] for s in data["skipped"])
-
-
 # ---------------------------------------------------------------------------- what it writes
 
 
@@ -215,13 +203,6 @@ def test_json_is_the_record_too(surveyed: Surveyed) -> None:
     assert record(surveyed.out) == json.loads(target.read_text("utf-8"))
 
 
-def test_json_makes_its_folders(tmp_path: Path) -> None:
-    """Nothing but the record is left in them."""
-    root, target = lay(tmp_path / "corpus", fine=FINE), tmp_path / "a" / "b" / "record.json"
-    assert 0 == recover(root, "--out", tmp_path / "out", "--json", target)
-    assert ["record.json"] == [p.name for p in target.parent.iterdir()]
-
-
 def test_nothing_is_written_but_where_it_was_asked_for(surveyed: Surveyed, elsewhere: Path) -> None:
     """The corpus, the working directory and all around them stay as they were."""
     asked = ("new", "cache", "record.json")
@@ -230,47 +211,7 @@ def test_nothing_is_written_but_where_it_was_asked_for(surveyed: Surveyed, elsew
     assert [] == list(elsewhere.iterdir())
 
 
-def test_a_second_survey_of_the_same_is_the_same(
-    surveyed: Surveyed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What is kept from one survey to the next changes nothing but the time."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(surveyed.root / "cache"))
-    monkeypatch.setenv("LOCALAPPDATA", str(surveyed.root / "cache"))
-    assert 0 == recover(surveyed.root / "corpus", "--out", tmp_path)
-    assert settled(record(surveyed.out)) == settled(record(tmp_path))
-
-
-def test_a_second_survey_sees_what_has_changed(small: Path, tmp_path: Path) -> None:
-    """A file mended since the last survey parses in the next one."""
-    corpus = lay(tmp_path / "corpus", two=TWO, fine=FINE)
-    assert 0 == recover(corpus, "--out", tmp_path / "out", grammar=small)
-    (corpus / "two" / "two.src").write_bytes(FINE)
-    (corpus / "fine" / "fine.src").write_bytes(TWO)
-    assert 0 == recover(corpus, "--out", tmp_path / "out", grammar=small)
-    failures = record(tmp_path / "out")["failures"]
-    assert ["fine.src"] == [failure["path"].split("/")[-1] for failure in failures]
-
-
 # ------------------------------------------------------------------------------- the options
-
-
-def test_jobs_make_no_difference(surveyed: Surveyed, tmp_path: Path) -> None:
-    """Two processes find what one finds."""
-    assert 0 == recover(surveyed.root / "corpus", "--out", tmp_path, "--jobs", "2")
-    assert settled(record(surveyed.out)) == settled(record(tmp_path))
-
-
-def test_files_folders_and_archives_can_be_named_together(small: Path, tmp_path: Path) -> None:
-    """Each thing named is surveyed, once, in any order."""
-    corpus = lay(tmp_path / "corpus", fine=FINE, two=TWO, other=FINE)
-    archive = tmp_path / "cell.zip"
-    with zipfile.ZipFile(archive, "w") as stream:
-        stream.writestr("KRC/R1/Program/a.src", TWO + b"\n")
-    places = [corpus / "fine", archive, corpus / "two" / "two.src"]
-    assert 0 == recover(*places, "--out", tmp_path / "1", grammar=small)
-    assert 0 == recover(*places[::-1], places[0], "--out", tmp_path / "2", grammar=small)
-    assert settled(record(tmp_path / "1")) == settled(record(tmp_path / "2"))
-    assert 3 == record(tmp_path / "1")["files"]
 
 
 def test_another_grammar_finds_something_else(tmp_path: Path) -> None:

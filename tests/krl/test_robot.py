@@ -1,7 +1,6 @@
 """`krl robot` from the outside: the contract of `status-turn`, and one line where it cannot be."""
 
 import json
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -226,13 +225,3 @@ def test_only_numpy_is_needed(ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None
     for name in ("scipy", "ruckig", "mujoco"):
         monkeypatch.setitem(sys.modules, name, None)
     assert 0 == ask([])[0]
-
-
-def test_nothing_of_it_is_loaded_before_it_is_asked_for() -> None:
-    """Other commands start without the packages for the arm."""
-    code = (
-        "import sys, krl.commands.app, krl.errors; "
-        "print(sorted({'numpy', 'scipy', 'interp'} & set(sys.modules)))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "[]" == done.stdout.strip()

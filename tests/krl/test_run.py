@@ -7,7 +7,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from importlib import resources
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -92,13 +91,6 @@ def test_time_that_is_over(run: Run) -> None:
     """Where the time is over before the program is, the status is 1 and the line tells where."""
     status, out, _ = run("WAIT FOR $IN[1]\n", "--max-time", "0.5")
     assert (1, "main.src: time limit after 0.5 s at main.src:2\n") == (status, out)
-
-
-def test_statements_that_are_over(run: Run) -> None:
-    """An endless program ends after as many statements as it may begin."""
-    status, out, _ = run("LOOP\nENDLOOP\n", "--statements", "70")
-    assert 1 == status
-    assert out.endswith("it has not ended after 70 statements\n")
 
 
 @pytest.mark.parametrize(("executor", "most"), [("tree", 70), ("vm", 90)])
@@ -201,28 +193,6 @@ def test_strict(run: Run) -> None:
     assert 1 == err.count("\n")
 
 
-@pytest.mark.parametrize(
-    ("body", "number", "said"),
-    [
-        ("PTP {X 2000}\n", None, "reach"),
-        ("PTP {A1 171}\n", 1447, "software limit"),
-        ("LIN {Z 2000}\n", 1366, "the path cannot be followed"),
-        ("CIRC {X 460,Y 0,Z 780},{X 475,Y 0,Z 750}\n", None, "circle"),
-        ("$VEL.CP=0.0\nLIN {Z 700}\n", 1422, "$VEL.CP"),
-    ],
-    ids=["unreachable", "software-limit", "line-out-of-reach", "degenerate-circle", "no-speed"],
-)
-def test_motions_that_cannot_be(run: Run, body: str, number: int | None, said: str) -> None:
-    """What the arm cannot do stops the program at its line with the message of the controller."""
-    lines = body.count("\n") + 4
-    status, out, err = run(INI + body)
-    assert (1, "") == (status, err)
-    assert f"at main.src:{lines}: " in out
-    assert said in out
-    assert "(message " in out if number is None else f"(message {number})" in out
-    assert 1 == out.count("\n")
-
-
 def test_a_point_out_of_reach(run: Run) -> None:
     """Without machine data the arm is sized for one whole point, in a line; not with --strict."""
     point = "PTP {X 1500,Y 0,Z 900,A 0,B 90,C 0,S 2,T 2}\n"
@@ -230,14 +200,6 @@ def test_a_point_out_of_reach(run: Run) -> None:
     assert (0, True) == (status, err.startswith("arm: no machine data of an arm: KR6R900 SIZED x "))
     status, out, err = run(INI + point, "--strict")
     assert (1, "", True) == (status, err, "reach" in out)
-
-
-def test_machine_data_that_are_not_understood(run: Run, tmp_path: Path) -> None:
-    """One line names their file and line, also if nothing else is missing."""
-    text = "DEFDAT $MACHINE\nREAL $LENGTH_A=25.0\nDECL MAIN_AXIS $MAIN_AXIS=#SS\nENDDAT\n"
-    (tmp_path / "$machine.dat").write_text(text)
-    said = "$MAIN_AXIS is #SS; only an articulated arm (#NR) is supported: KR6R900 SIZED is used"
-    assert f"arm: $machine.dat:3: {said} instead\n" == run(INI)[2]
 
 
 @pytest.mark.parametrize(
@@ -304,13 +266,6 @@ def test_first_motion_is_a_line(run: Run) -> None:
     assert "(message 1443)" in run(body, "--strict")[1]
 
 
-@pytest.mark.parametrize("first", ["PTP {A1 10}", "PTP_REL {A1 10}"])
-def test_first_motion_is_not_complete(run: Run, first: str) -> None:
-    """A motion that says only in part where the arm goes is executed from where it is."""
-    said = "main.src:2: the first motion is not allowed as such: executed from where the arm is"
-    assert f"robot program: {said}" == run(f"{first}\n")[2].splitlines()[-1]
-
-
 def test_arguments_of_the_first_routine_are_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -335,30 +290,6 @@ def test_submit_that_ends(run: Run, tmp_path: Path) -> None:
     status, _, err = run("WAIT SEC 1\n", *more)
     said = "submit program: sps.sub:2: it has not ended after 2,000 statements\n"
     assert (1, said) == (status, err)
-
-
-@pytest.mark.parametrize(("missing", "number"), [("$TOOL", 1419), ("$BASE", 1516)])
-def test_missing_frames(run: Run, tmp_path: Path, missing: str, number: int) -> None:
-    """Where the profile has none, a Cartesian target needs a tool and a base first [MOT-15]."""
-    text = resources.files("interp.controller.state").joinpath("profiles/kss8.toml").read_text()
-    lines = [
-        f'"{missing}" = false' if line.startswith(f'"{missing}"') else line
-        for line in text.splitlines()
-    ]
-    profile = tmp_path / "bare.toml"
-    profile.write_text("\n".join(lines), encoding="utf-8")
-    body = "".join(f"{line}\n" for line in INI.splitlines() if not line.startswith(missing))
-    status, out, _ = run(body + "LIN {Z 700}\n", "--profile", str(profile))
-    assert 1 == status
-    assert f"(message {number})" in out
-
-
-def test_a_motion_of_length_zero(run: Run, tmp_path: Path) -> None:
-    """A motion to where the arm is stops nothing: it is told, and the program goes on."""
-    trace = tmp_path / "trace.jsonl"
-    status, _, _ = run(f"{INI}PTP {{A1 0}}\n", "--trace", str(trace))
-    assert 0 == status
-    assert [3171] == [one["number"] for one in events(trace) if one["kind"] == "message"][-1:]
 
 
 # -- what it takes ---------------------------------------------------------------------------------
@@ -412,42 +343,6 @@ def test_batches_cost_time(run: Run, tmp_path: Path) -> None:
     assert [1, 1] == blends
 
 
-@pytest.mark.parametrize("folder", ["KRC/R1/Program", "R1", "steu/Mada"])
-def test_project_of_a_backup(run: Run, tmp_path: Path, folder: str) -> None:
-    """A file below R1 or STEU belongs to all files there, wherever it was started from."""
-    place = tmp_path.joinpath(*folder.split("/"))
-    place.mkdir(parents=True)
-    root = tmp_path / ("KRC" if folder.startswith("KRC") else "")
-    (root / "R1" / "System").mkdir(parents=True)
-    (root / "R1" / "System" / "help.src").write_text("DEF help ( )\nHALT\nEND\n", "utf-8")
-    (place / "begin.src").write_text("DEF begin ( )\nhelp ( )\nEND\n", "utf-8")
-    status, out, _ = run(None, str(place / "begin.src"))
-    shown = (place / "begin.src").relative_to(root).as_posix()
-    assert (0, f"{shown}: halt after 0 s at R1/System/help.src:2\n") == (status, out)
-
-
-def test_project_of_a_loose_file(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A file beside R1, not in it, belongs to the files of its own folder only."""
-    (program := tmp_path / "R1" / "Program").mkdir(parents=True)
-    for name, folder in (("near", tmp_path), ("far", program)):
-        (folder / f"{name}.src").write_text(f"DEF {name} ( )\nHALT\nEND\n", encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "a.src").write_text("DEF a ( )\nnear ( )\nEND\n", encoding="utf-8")
-    assert (0, "a.src: halt after 0 s at near.src:2\n", "") == run(None, "a.src")
-    (tmp_path / "a.src").write_text("DEF a ( )\nfar ( )\nEND\n", encoding="utf-8")
-    assert 1 == run(None, "a.src", "--strict")[0]
-
-
-def test_program_in_an_archive(run: Run, tmp_path: Path) -> None:
-    """A path may lead into an archive, whose files are the project."""
-    with ZipFile(tmp_path / "backup.zip", "w") as archive:
-        archive.writestr("KRC/R1/Program/go.src", "DEF go ( )\nhelp ( )\nEND\n")
-        archive.writestr("KRC/R1/System/help.src", "DEF help ( )\nHALT\nEND\n")
-    status, out, _ = run(None, str(tmp_path / "backup.zip" / "KRC/R1/Program/go.src"))
-    assert 0 == status
-    assert "R1/Program/go.src: halt after 0 s at R1/System/help.src:2\n" == out
-
-
 def test_letter_case_of_a_path_in_an_archive(run: Run, tmp_path: Path) -> None:
     """It does not count, unless files differ in nothing else; a wrong name is told as such."""
     backup = tmp_path / "backup.zip"
@@ -462,15 +357,6 @@ def test_letter_case_of_a_path_in_an_archive(run: Run, tmp_path: Path) -> None:
         int(run(None, str(backup / name))[1].rpartition(":")[2])
         for name in ("KRC/R1/Go.src", "KRC/r1/go.src")
     ]
-
-
-def test_data_in_an_archive(run: Run, tmp_path: Path) -> None:
-    """Files of an archive go by their names: a data list belongs to its program."""
-    with ZipFile(tmp_path / "backup.zip", "w") as archive:
-        archive.writestr("KRC/R1/go.src", "DEF go ( )\nWAIT SEC span\nEND\n")
-        archive.writestr("KRC/R1/go.dat", "DEFDAT go\nREAL span=0.5\nENDDAT\n")
-    said = run(None, str(tmp_path / "backup.zip" / "KRC/R1/go.src"))
-    assert (0, "R1/go.src: end after 0.504 s at R1/go.src:2\n", "") == said
 
 
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="names are Unicode there")
@@ -534,17 +420,6 @@ def test_what_is_kept_of_a_run(
     assert kept == kinds
 
 
-def test_trace_is_the_same_everywhere(run: Run, tmp_path: Path) -> None:
-    """Executors and robots do not show in the trace."""
-    texts = set()
-    for executor, robot in (("tree", "none"), ("vm", "kinematic"), ("tree", "kinematic")):
-        trace = tmp_path / f"{executor}-{robot}.jsonl"
-        body = f"{INI}LIN {{Z 780}} C_DIS\nLIN {{X 470}}\n"
-        run(body, "--executor", executor, "--robot", robot, "--trace", str(trace))
-        texts.add(trace.read_bytes())
-    assert 1 == len(texts)
-
-
 def test_path(run: Run, tmp_path: Path) -> None:
     """--path writes a row for each interpolation cycle, up to the last one of the run."""
     pandas = pytest.importorskip("pandas")
@@ -590,24 +465,6 @@ def test_page(run: Run, tmp_path: Path) -> None:
 def test_bad_options(run: Run, options: list[str], said: str) -> None:
     """Each wrong option is one line that names it, with status 2; nothing runs."""
     status, out, err = run("HALT\n", *options)
-    assert (2, "") == (status, out)
-    assert said in err
-    assert 1 == err.count("\n")
-
-
-@pytest.mark.parametrize(
-    ("script", "said"),
-    [
-        ("t=0.5 IN[1]=MAYBE\n", ":1: 'MAYBE' is not a value"),
-        ("\nwhen HALT press START\n", ":2: "),
-        ("t=1 IN[0]=TRUE\n", ":1: "),
-        ("t=1 NOWHERE=TRUE\n", ":1: "),
-    ],
-    ids=["value", "cause", "index", "name"],
-)
-def test_broken_scripts(run: Run, script: str, said: str) -> None:
-    """What is wrong with a script is told with its line before anything runs."""
-    status, out, err = run("HALT\n", script=script)
     assert (2, "") == (status, out)
     assert said in err
     assert 1 == err.count("\n")
@@ -709,17 +566,6 @@ def test_a_line_that_cannot_be_read(run: Run, line: str) -> None:
     status, out, err = run(f"{line}\n")
     assert (1, "main.src: end after 0 s") == (status, out.partition(" at ")[0])
     assert err.startswith("left out: main.src:2: ")
-
-
-def test_syntax_error(run: Run, tmp_path: Path) -> None:
-    """A program with one runs without that line and says so; under --strict nothing of it does."""
-    file = tmp_path / "broken.src"
-    file.write_text("DEF broken ( )\n$OUT[1]=TRUE\nIF THEN\nEND\n", encoding="utf-8")
-    status, out, err = run(None, str(file))
-    assert (1, "broken.src: end after 0 s at broken.src:3\n") == (status, out)
-    assert "left out: broken.src:3: " in err
-    status, out, err = run(None, str(file), "--strict")
-    assert (2, "", True) == (status, out, "broken.src:3: " in err)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has no signals")

@@ -110,52 +110,6 @@ def test_the_judge_shows_what_was_seen_beside_what_was_expected(
     assert _is_sound(browser)
 
 
-def test_what_was_seen_is_in_sight_in_a_narrow_window(
-    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
-) -> None:
-    """At 800 pixels nothing lies beyond the edge, however long a line of a case is."""
-    record = conform_record()
-    for case in record["cases"]:
-        case["files"][0]["text"] = case["files"][0]["text"].replace(";>", f"{'; ' * 60};>")
-    record["suites"] = [
-        {
-            "name": "io",
-            "cases": 2,
-            "cells": [
-                {"executor": executor, "robot": robot, "verdicts": {"pass": 2}}
-                for executor in ("tree", "vm", "native")
-                for robot in ("none", "kinematic", "mujoco")
-            ],
-        }
-    ]
-    size = browser.get_window_size()
-    browser.set_window_size(800, 900)
-    try:
-        opened(write_conformance_page(record, tmp_path), "#case=io%2Fwrong")
-        reach = "return document.documentElement.scrollWidth <= innerWidth"
-        assert browser.execute_script(reach)
-        seen = browser.find_element(By.CSS_SELECTOR, ".case-source .seen").rect
-        assert seen["x"] + seen["width"] <= 800
-    finally:
-        browser.set_window_size(size["width"], size["height"])
-
-
-@pytest.mark.usefixtures("narrow")
-def test_a_window_of_a_telephone_shows_cases_as_cards(
-    browser: webdriver.Chrome, opened: Opened, tmp_path: Path
-) -> None:
-    """At 400 pixels nothing lies beyond the edge or upon something else, opened cases included."""
-    opened(write_conformance_page(conform_record(), tmp_path), "#case=io%2Fwrong")
-    assert 400 == browser.execute_script("return document.documentElement.scrollWidth")
-    for row in browser.find_elements(By.CSS_SELECTOR, ".row"):
-        boxes = [cell.rect for cell in row.find_elements(By.XPATH, "./td") if cell.text]
-        for place, one in enumerate(boxes):
-            for other in boxes[place + 1 :]:
-                is_beside = one["x"] + one["width"] <= other["x"] + 1
-                is_above = one["y"] + one["height"] <= other["y"] + 1
-                assert is_beside or is_above or other["y"] + other["height"] <= one["y"] + 1
-
-
 def test_cases_are_filtered_by_verdict_and_words(
     browser: webdriver.Chrome, opened: Opened, tmp_path: Path
 ) -> None:

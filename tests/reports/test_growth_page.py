@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 
 from reports.recovery.growth_page import write_growth_page
-from tests.reports.page_elements import LOADING_ATTRIBUTES, Elements
 
 RecordBuilder = Callable[[str], dict[str, Any]]
 
@@ -56,33 +55,6 @@ def test_health_is_reported(grown: RecordBuilder, tmp_path: Path) -> None:
     page = _page(grown("believable"), tmp_path)
     assert "Of 196 decisions in the rules 85.5 % need one token and 95.2 %" in page
     assert "1 of 114,000 lines in files that parse can be read in two ways." in page
-
-
-def test_the_page_loads_nothing(grown: RecordBuilder, tmp_path: Path) -> None:
-    """No element names a resource, no style sheet imports one; links stay inside the page."""
-    page = _page(grown("believable"), tmp_path)
-    elements = Elements(page)
-    loaded = [
-        value
-        for _, attributes in elements.tags
-        for name, value in attributes.items()
-        if name in LOADING_ATTRIBUTES and not (value or "").startswith("#c-")
-    ]
-    assert [] == loaded
-    assert [] == [tag for tag, _ in elements.tags if tag in {"link", "iframe", "object", "base"}]
-    assert [] == re.findall(r"@import|url\(", page)
-    written = {"http://www.w3.org/2000/svg", "https://github.com/leeoniya/uPlot"}  # its licence
-    assert written == set(re.findall(r"\w+://[^\"'\s<]*", page))
-
-
-def test_hostile_text_adds_no_element(grown: RecordBuilder, tmp_path: Path) -> None:
-    """A record full of markup gives the elements that its rows need and no other."""
-    page = _page(grown("hostile"), tmp_path)
-    tags = [tag for tag, _ in Elements(page).tags]
-    assert 2 == tags.count("script")
-    assert 0 == tags.count("img")
-    assert [] == re.findall("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e\u2028]", page)
-    assert "{{ 7*7 }}" in page
 
 
 def test_the_same_record_gives_the_same_page(grown: RecordBuilder, tmp_path: Path) -> None:

@@ -271,17 +271,6 @@ def test_a_drag_on_a_chart_enlarges_all(shown: Shown) -> None:
     assert not any(browser.execute_script(seen))
 
 
-@pytest.mark.usefixtures("narrow")
-def test_a_narrow_window_shows_everything(shown: Shown) -> None:
-    """At 400 pixels nothing lies beyond the edge, and the controls are in sight."""
-    browser = shown(recorded())
-    assert 400 == browser.execute_script("return document.documentElement.scrollWidth")
-    for selector in ("#play", "#slider", "#moment", "#rate", "#scene", "#path-only", "#search"):
-        box = find(browser, selector).rect
-        assert box["x"] >= 0
-        assert box["x"] + box["width"] <= 400
-
-
 def test_a_run_that_stops_at_once_says_so(shown: Shown) -> None:
     """No time passed: the arm stands, nothing is drawn over time, and nothing breaks."""
     record = recorded("DEF CELL()\nHALT\nEND\n")

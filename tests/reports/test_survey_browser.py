@@ -415,43 +415,6 @@ def test_a_survey_without_clusters_says_why(
     assert len(find_all(browser, "#skipped summary")) == 3
 
 
-def test_the_page_follows_the_colour_scheme(
-    browser: webdriver.Chrome, pages: Callable[[str], str]
-) -> None:
-    """Dark and light are chosen by the system, not by a switch."""
-    colours = []
-    for scheme in ("light", "dark"):
-        feature = {"name": "prefers-color-scheme", "value": scheme}
-        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [feature]})
-        load(browser, pages("complete"))
-        colours.append(find(browser, "body").value_of_css_property("background-color"))
-    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
-    assert colours == ["rgba(255, 255, 255, 1)", "rgba(21, 24, 28, 1)"]
-
-
-@pytest.mark.parametrize("width", [1000, 1280])
-def test_the_page_does_not_scroll_sideways(
-    browser: webdriver.Chrome, pages: Callable[[str], str], width: int
-) -> None:
-    """With a card open, a window 1000 pixels wide holds the page."""
-    browser.set_window_size(width, 900)
-    load(browser, f"{pages('believable')}#cluster=c-004de1")
-    root = "document.documentElement"
-    assert browser.execute_script(f"return {root}.scrollWidth <= {root}.clientWidth")
-
-
-@pytest.mark.usefixtures("narrow")
-@pytest.mark.parametrize("name", ["believable", "large", "both", "empty"])
-def test_a_narrow_window_reads_like_a_list(
-    browser: webdriver.Chrome, pages: Callable[[str], str], name: str
-) -> None:
-    """At 400 pixels nothing lies beyond the edge, and a title has the width of the page."""
-    load(browser, pages(name))
-    assert 400 == browser.execute_script("return document.documentElement.scrollWidth")
-    titles = find_all(browser, ".row:not([hidden], .later) .open")
-    assert all(title.size["height"] < 80 for title in titles[:20])
-
-
 def test_a_long_list_is_short_at_first(
     browser: webdriver.Chrome, pages: Callable[[str], str], survey_record: RecordBuilder
 ) -> None:

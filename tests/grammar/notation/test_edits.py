@@ -3,7 +3,6 @@
 import json
 from collections.abc import Iterator
 from random import Random
-from typing import get_args
 
 import pytest
 from hypothesis import assume, given
@@ -247,19 +246,6 @@ def test_addresses_lead_to_every_element(name: str, request: pytest.FixtureReque
         }
 
 
-def test_addresses_of_a_rule() -> None:
-    """Alternatives and elements are counted from 1, groups as further pairs."""
-    (rule, *_) = grammar_of("s : A (B | C (t A)*)? | B ;").rules
-    places = {a: rule.source_of(s) for a, s in sequences(rule)}
-    assert places == {
-        (1,): "A (B | C (t A)*)?",
-        (1, 2, 1): "B",
-        (1, 2, 2): "C (t A)*",
-        (1, 2, 2, 2, 1): "t A",
-        (2,): "B",
-    }
-
-
 # ----------------------------------------------------------------------------------- laws
 
 TEXTS = ["CIRC", "'='", "NAME", "expression", "index (',' index)*", "(STRING | 'ON')", "eol"]
@@ -377,11 +363,6 @@ def test_edits_as_plain_data(edit: Edit) -> None:
     """An edit becomes plain data that JSON and TOML can hold, and comes back from it."""
     data = to_data(edit)
     assert edit == from_data(json.loads(json.dumps(data)))
-
-
-def test_every_kind_of_edit_is_tried() -> None:
-    """The list above leaves no kind of edit out."""
-    assert set(get_args(Edit)) == {type(edit) for edit in EDITS}
 
 
 @pytest.mark.parametrize(

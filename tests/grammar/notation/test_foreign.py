@@ -113,22 +113,6 @@ def test_a_quoted_loop_is_a_text() -> None:
     assert [True, False] == _accepts("s : TEXT EOF ;\nTEXT : '.*?' 'x' ;", ".*?x", "aax")
 
 
-@pytest.mark.parametrize(
-    ("rules", "why"),
-    [
-        ("s : { ok() }? NAME ;", "a semantic predicate"),
-        ("s : t NAME ;\nt : s ;", "left recursion"),
-        ("s : s '!' s ;", "left recursion"),
-        ("s : missing ;", "missing is not defined"),
-        ("s : NAME ;\nA : ~'ab' ;", "only a set of characters can be negated"),
-    ],
-)
-def test_what_is_not_understood(rules: str, why: str) -> None:
-    """It is named, as in a grammar of our style."""
-    with pytest.raises(GrammarError, match=why):
-        read_foreign(f"grammar x;\n{rules}\n{_TOKENS}")
-
-
 def test_what_comes_out_is_in_our_style() -> None:
     """It can be read again as any other of ours."""
     text = read_foreign(f"grammar x;\ns : s ',' NAME | 'x' ;\n{_TOKENS}").text

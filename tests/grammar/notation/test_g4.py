@@ -136,35 +136,6 @@ def test_own_grammars_are_printed_as_they_were_read(path: Path) -> None:
     assert hashlib.sha256(data).hexdigest() == grammar.sha256
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda p: p.name)
-def test_own_grammars_have_spans_that_hold(path: Path) -> None:
-    """The text at each element's span, read on its own, is that element."""
-    for rule in read_file(path).rules:
-        for alternative in rule.alternatives:
-            inner = [read_rule(f"x : {rule.source_of(e)} ;") for e in alternative.elements]
-            found = tuple(r.alternatives[0].elements[0] for r in inner)
-            assert alternative.elements == found
-
-
-def test_the_preliminary_grammar_as_data(preliminary: Grammar) -> None:
-    """Name, options, start and one rule of each kind are what the file says."""
-    assert preliminary.name == "KRL"
-    assert preliminary.case_insensitive
-    assert preliminary.start == "module"
-    assert preliminary.by_name["wait"] == Rule(
-        "wait",
-        tuple(
-            Alternative(tuple(Reference(n, NOWHERE) for n in names), None, NOWHERE)
-            for names in (["WAIT", "FOR", "expression"], ["WAIT", "SEC", "expression"])
-        ),
-    )
-    assert preliminary.by_name["COMMENT"].commands == ("skip",)
-    assert [r.name for r in preliminary.rules if r.is_skipped] == ["COMMENT", "SPACE"]
-    assert preliminary.by_name["wait"].text == (
-        "wait\n    : WAIT FOR expression\n    | WAIT SEC expression\n    ;"
-    )
-
-
 # --------------------------------------------------------------------------- single facts
 
 
@@ -201,13 +172,6 @@ def test_fragments_labels_and_commands() -> None:
     assert ("channel(HIDDEN)",) == hidden.commands
     assert hidden.is_skipped
     assert not read_rule("WS : ' ' ;").is_skipped
-
-
-def test_empty_alternatives() -> None:
-    """An alternative may be empty, and the text still comes back."""
-    grammar = grammar_of("s : A | ;")
-    assert [1, 0] == [len(a.elements) for a in grammar.by_name["s"].alternatives]
-    assert "s : A | ;" in grammar.text
 
 
 def test_tokens_by_their_text() -> None:

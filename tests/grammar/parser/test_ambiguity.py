@@ -68,22 +68,6 @@ def test_textbook_cases(rules: Sequence[str], text: str, expected: bool) -> None
     assert expected == ambiguous(grammar_of(*rules), text)
 
 
-def test_what_cannot_be_read_has_no_reading() -> None:
-    """A text that is no sentence is not ambiguous, however ambiguous its beginning is."""
-    recognizer = Recognizer(grammar_of("s : (a | b) C EOF", "a : A", "b : A"))
-    assert is_ambiguous(recognizer, recognizer.start, recognizer.kinds("A C"))
-    for text in ("A B", "A", "B", "A C C"):
-        assert not is_ambiguous(recognizer, recognizer.start, recognizer.kinds(text))
-
-
-def test_readings_that_end_differently_are_none_yet() -> None:
-    """Halfway through, two readings may still turn out to be one; at the end they do not."""
-    recognizer = Recognizer(grammar_of("s : a B EOF | b C EOF", "a : A", "b : A"))
-    kinds = recognizer.kinds("A B")
-    assert not is_ambiguous(recognizer, recognizer.start, kinds[:1])
-    assert not is_ambiguous(recognizer, recognizer.start, kinds)
-
-
 def test_reading_may_begin_anywhere() -> None:
     """From a state in the middle only what is read from there on counts."""
     recognizer = Recognizer(grammar_of("s : t (IF t)? EOF", "t : (a | b) C? | B", "a : A", "b : A"))
@@ -118,16 +102,3 @@ def test_it_is_what_counting_derivations_says(
         kinds = [recognizer.lexer.kind_of[name] for name in sentence]
         count = len(list(islice(Readings(grammar, sentence), 3)))
         assert (count > 1) == is_ambiguous(recognizer, recognizer.start, kinds), sentence
-
-
-def test_random_grammars_are_of_both_kinds(random_grammar: Callable[[Random], Grammar]) -> None:
-    """Among the random cases there are ambiguous sentences and others, so that the law bites."""
-    said = set()
-    for seed in range(12):
-        chance = Random(seed)
-        grammar = random_grammar(chance)
-        recognizer = Recognizer(grammar)
-        sentence = [*Sentences(grammar).random(chance, 6), "EOF"]
-        kinds = [recognizer.lexer.kind_of[name] for name in sentence]
-        said.add(is_ambiguous(recognizer, recognizer.start, kinds))
-    assert {True, False} == said

@@ -44,40 +44,6 @@ def counts(coverage: GrammarCoverage) -> Counts:
     return choices, {place: set(found) for place, found in coverage.rounds.items()}
 
 
-def test_what_is_counted() -> None:
-    """The alternative at each place of a rule, of each group, and the rounds of each loop."""
-    grammar = grammar_of("s : (x | A)? B+ x (y C)* EOF", "x : A | B C", "y : D")
-    coverage = covered_by(grammar, ["B C B B A D C D C", "A B A", "B A"])
-    assert {
-        ("s", ()): {1: 3},
-        ("s", (1, 1)): {1: 2},
-        ("s", (1, 1, 1, 1)): {1: 1, 2: 1},
-        ("s", (1, 3)): {1: 3},
-        ("s", (1, 4)): {1: 2},
-        ("s", (1, 4, 1, 1)): {1: 2},
-        ("x", ()): {1: 3, 2: 1},
-        ("y", ()): {1: 1},
-    } == coverage.choices
-    assert {(1, 1): {0: 1, 1: 2}, (1, 2): {1: 2, 2: 1}, (1, 4): {0: 2, 2: 1}} == {
-        at: found for (_, at), found in coverage.rounds.items()
-    }
-    assert [] == coverage.unused_alternatives
-
-
-@pytest.mark.parametrize(
-    ("rule", "text", "place", "expected"),
-    [
-        ("s : (A B*)+ EOF", "A A B A B B", (1, 1, 1, 2), [0, 1, 2]),
-        ("s : (A B*)+ EOF", "A A B A B B", (1, 1), [3]),
-        ("s : A? A? EOF", "A", (1, 1), [1]),
-        ("s : A? A? EOF", "A", (1, 2), [0]),
-    ],
-)
-def test_rounds(rule: str, text: str, place: Address, expected: list[int]) -> None:
-    """Each time a loop is entered counts; of two ways the one that ANTLR takes."""
-    assert expected == sorted(covered_by(grammar_of(rule), [text]).rounds["s", place])
-
-
 def test_unused_alternatives() -> None:
     """What no tree takes is named in the order of the grammar; of two ways the first counts."""
     grammar = grammar_of("s : x EOF", "x : A | y | z z | A", "y : B C", "z : C | D E |")

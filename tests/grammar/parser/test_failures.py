@@ -264,21 +264,6 @@ def test_contexts_show_people_what_they_write() -> None:
 # -------------------------------------------------------------------------- reading on
 
 
-def test_a_failed_opener_still_opens() -> None:
-    """A FOR with an unknown STEP is a FOR: its body and its ENDFOR are read."""
-    body = ["FOR I=1 TO 9 STEP 2", "X=1", "FOR J=1 TO 9 STEP 2", "X= ?", "ENDFOR", "ENDFOR"]
-    assert [(2, 14, "STEP"), (4, 14, "STEP"), (5, 4, "?")] == found(program(*body))
-    assert [] == following(program(*body))
-    assert [2, 9] == direct(program(*body, "X=1", "ENDFOR"))[::3]
-
-
-def test_a_dropped_line_leaves_the_place_as_it_was() -> None:
-    """Lines that make no sense at all change nothing for those around them."""
-    text = program("LOOP", "IF X THEN", "? ? ?", "ENDIF", "((", "ENDLOOP", "X=1")
-    assert [(4, 1, "?"), (6, 1, "(")] == found(text)
-    assert [] == following(text)
-
-
 UNKNOWN = {
     "SWITCH": ["SWITCH X", "CASE 1", "X=1", "CASE 2,3", "WAIT SEC 1", "DEFAULT", "ENDSWITCH"],
     "SPLINE": ["SPLINE", "SPL P1", "SLIN P2", "SCIRC P3,P4", "SPL P5", "ENDSPLINE"],
@@ -319,20 +304,6 @@ def test_the_body_of_an_unknown_routine_is_read(opener: str) -> None:
     assert [10] == following(text)
     assert [1, 5] == direct("\n".join([opener, *body, ""]))
     assert [7] == following("\n".join([opener, *body, ""]))
-
-
-def test_a_known_block_with_an_unknown_opener() -> None:
-    """Where an IF cannot be read at all, its ELSE follows from it and its ENDIF closes it."""
-    text = program("IF X", "X=1", "ELSE", "X=2", "ENDIF", "Y= ?")
-    assert [2, 7] == direct(text)
-    assert [4] == following(text)
-
-
-def test_the_end_of_a_file_inside_a_block() -> None:
-    """What is still open at the end of a file fails there, on a line of its own."""
-    assert [(4, 1, "")] == found("DEF A()\nIF X THEN\nX=1\n")
-    assert [4] == direct("DEF A()\nIF X THEN\nX=1\n")
-    assert [1] == direct("SWITCH X\n")
 
 
 def test_deep_nesting_and_long_lines() -> None:

@@ -1,7 +1,6 @@
 """Text becomes the tokens that the lexer rules say: the longest match, and of equals the first."""
 
 from collections.abc import Callable, Mapping
-from itertools import product
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -143,94 +142,7 @@ def test_tokens_of_random_rules(chance: Random, lexer_ends: LexerEnds) -> None:
         assert SKIPPED not in map(lexer.kinds.__getitem__, lexer.lexemes(text))
 
 
-@given(text=NASTY_TEXT)
-def test_nothing_is_lost(text: str) -> None:
-    """Every lexeme stands at its offset, none overlap, and between them is only what is skipped."""
-    lexer = lexer_of(GRAMMARS[1])
-    at = 0
-    for lexeme, offset in zip(lexer.lexemes(text), lexer.offsets(text), strict=True):
-        assert text.startswith(lexeme, offset)
-        assert at <= offset
-        assert [] == tokens_of(lexer, text[at:offset])
-        at = offset + len(lexeme)
-    assert [] == tokens_of(lexer, text[at:])
-
-
-def test_a_string_with_doubled_quotes(lexer_ends: LexerEnds) -> None:
-    """A rule whose longest match no plain pattern gives is read by the automaton itself."""
-    rules = "STRING : '\"' (~[\"\\n] | '\"\"')* '\"' ;\nNAME : [a-z]+ ;\nSPACE : ' '+ -> skip ;"
-    made = lexer_grammar(rules)
-    text = '"a""b" x "" """" "open'
-    expected = [
-        ("STRING", '"a""b"', 0),
-        ("NAME", "x", 7),
-        ("STRING", '""', 9),
-        ("STRING", '""""', 12),
-        ("ERROR", '"', 17),
-        ("NAME", "open", 18),
-    ]
-    assert expected == tokens_of(Lexer(made), text)
-    assert expected == slow_tokens(made, text, lexer_ends)
-
-
 # ---------------------------------------------------------------------------- plain facts
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("1.5.2", ["REAL_NUMBER 1.5", "DOT .", "INTEGER 2"]),
-        ("1.", ["INTEGER 1", "DOT ."]),
-        ("<=>", ["AT_MOST <=", "GREATER >"]),
-        ("===", ["EQUALS ==", "ASSIGN ="]),
-        ("FOR fOr FORT", ["FOR FOR", "FOR fOr", "NAME FORT"]),
-        ("$OUT[1]", ["NAME $OUT", "LBRACKET [", "INTEGER 1", "RBRACKET ]"]),
-        ("#A$ #", ["ENUM_CONSTANT #A$", "ERROR #"]),
-        ("'b01' 'B01", ["BIT_STRING 'b01'", "ERROR '", "NAME B01"]),
-        ('"a;b" ;"c"', ['STRING "a;b"']),
-        ('"a\n', ['ERROR "', "NAME a", "NEWLINE \n"]),
-        ("\r\n\r\r\n", ["NEWLINE \r\n", "NEWLINE \r", "NEWLINE \r\n"]),
-        ("&A ;x", ["HEADER &A ;x"]),
-        ("a\0\x0bb", ["NAME a", "ERROR \0", "ERROR \x0b", "NAME b"]),
-        ("; 1\t\n", ["NEWLINE \n"]),
-        ("", []),
-    ],
-)
-def test_tokens_of_the_preliminary_grammar(
-    preliminary: Grammar, text: str, expected: list[str]
-) -> None:
-    """Longest match, keyword before name, comments away, unknown characters one by one."""
-    found = tokens_of(lexer_of(preliminary), text)
-    assert expected == [f"{name} {lexeme}" for name, lexeme, _ in found]
-
-
-def test_only_ascii_letters_have_two_cases(preliminary: Grammar) -> None:
-    """No letter beyond ASCII stands for an ASCII one, however Unicode folds it."""
-    lexer = lexer_of(preliminary)
-    for word in map("".join, product(*zip("FOR", "for", strict=True))):
-        assert [("FOR", word, 0)] == tokens_of(lexer, word)
-    for letter in ("ſ", "ı", "İ", "\u212a", "é", "ß", "ﬁ"):
-        assert [("ERROR", letter, 0)] == tokens_of(lexer, letter)
-    made = Lexer(lexer_grammar("IS : 'IS' ;\nNAME : [a-zıſ]+ ;"))
-    assert [("NAME", "ıs", 0)] == tokens_of(made, "ıs")
-    assert [("NAME", "iſ", 0)] == tokens_of(made, "iſ")
-
-
-def test_case_counts_where_the_grammar_does_not_say_otherwise() -> None:
-    """Without ``caseInsensitive`` a word in other letters is another word."""
-    lexer = Lexer(
-        lexer_grammar("IF : 'if' ;\nNAME : [a-zA-Z]+ ;\nSPACE : ' ' -> skip ;", folded=False)
-    )
-    expected = ["IF", "NAME", "NAME"]
-    assert expected == [name for name, _, _ in tokens_of(lexer, "if IF If")]
-
-
-def test_of_equals_the_first_rule_wins() -> None:
-    """A keyword behind the rule for names is a name, before it a keyword."""
-    before = Lexer(lexer_grammar("IF : 'IF' ;\nNAME : [A-Z]+ ;"))
-    behind = Lexer(lexer_grammar("NAME : [A-Z]+ ;\nIF : 'IF' ;"))
-    assert [("IF", "if", 0)] == tokens_of(before, "if")
-    assert [("NAME", "if", 0)] == tokens_of(behind, "if")
 
 
 @pytest.mark.parametrize(
@@ -241,22 +153,6 @@ def test_no_lexeme_is_tried_in_every_way(rule: str, long: str) -> None:
     grammar = read(f"grammar T;\ns : A ;\nA : {rule} ;\nB : [A-Z]+ ;\n")
     lexer = Lexer(grammar)
     assert ["B", "A"] == [lexer.names[lexer.kinds[word]] for word in (long, f"{long}!")]
-
-
-def test_skipped_text_may_begin_like_a_token() -> None:
-    """A comment that begins with an operator is told from it by its length."""
-    lexer = Lexer(lexer_grammar("SLASH : '/' ;\nNAME : [A-Z]+ ;\nCOMMENT : '//' ~[\\n]* -> skip ;"))
-    assert ["NAME", "SLASH", "NAME"] == [n for n, _, _ in tokens_of(lexer, "a/b//c/d")]
-    assert [("NAME", "a", 0), ("SLASH", "/", 1)] == tokens_of(lexer, "a/")
-
-
-def test_skipped_words_among_the_lexemes() -> None:
-    """Where a skipped word could be a token too, it is among the lexemes, and known as skipped."""
-    rules = "GAP : '<=' -> skip ;\nSIGN : [<=]+ ;\nSPACE : ' ' -> skip ;"
-    lexer = Lexer(lexer_grammar(rules))
-    assert [("SIGN", "<", 3), ("SIGN", "<=<", 5)] == tokens_of(lexer, "<= < <=< <=")
-    assert not lexer.leaves_out_skipped
-    assert lexer_of(GRAMMARS[1]).leaves_out_skipped
 
 
 def test_names_and_numbers_of_tokens(preliminary: Grammar) -> None:

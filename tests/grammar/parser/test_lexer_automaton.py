@@ -15,9 +15,6 @@ from grammar.parser.lexer_automaton import (
     CharAutomaton,
     automaton_of,
     both_cases,
-    class_of,
-    first_characters,
-    overlap,
     pattern_of,
 )
 
@@ -62,25 +59,6 @@ def test_both_cases_of_ascii_only(ranges: list[tuple[int, int]]) -> None:
     assert expected == members(both_cases(ranges))
 
 
-@given(RANGES)
-def test_a_set_as_re_writes_it(ranges: list[tuple[int, int]]) -> None:
-    """The class for ``re`` matches these characters and no other, whatever they mean to ``re``."""
-    pattern = re.compile(class_of(normalised_ranges(ranges)))
-    assert members(ranges) == {c for c in range(600) if pattern.fullmatch(chr(c))}
-
-
-def test_a_set_of_everything() -> None:
-    """The widest set matches line ends and characters beyond the basic plane too."""
-    pattern = re.compile(class_of(((0, 0x10FFFF),)))
-    assert all(pattern.fullmatch(c) for c in ("\n", "\0", "\U0001f916", "]", "^"))
-
-
-@given(RANGES, RANGES)
-def test_overlap(left: list[tuple[int, int]], right: list[tuple[int, int]]) -> None:
-    """Two sets overlap when they share a character."""
-    assert bool(members(left) & members(right)) == overlap(left, right)
-
-
 # -------------------------------------------------------------------------- the automaton
 
 
@@ -100,39 +78,6 @@ def test_overlap(left: list[tuple[int, int]], right: list[tuple[int, int]]) -> N
 def test_the_automaton_is_minimal(rules: str, states: int) -> None:
     """No two states of the automaton accept the same continuations."""
     assert states == len(automaton(rules).edges)
-
-
-@pytest.mark.parametrize(
-    ("rules", "text", "end"),
-    [
-        ("A : '<' ; B : '<=' ; C : '<=>' ;", "<=>", 3),
-        ("A : '<' ; B : '<=>' ;", "<=", 1),
-        ("A : [0-9]+ ; B : [0-9]+ '.' [0-9]+ ;", "12.", 2),
-        ("A : [0-9]+ ; B : [0-9]+ '.' [0-9]+ ;", "12.5.2", 4),
-        ("A : 'a' ; B : 'a' 'b'* 'c' ;", "abbb", 1),
-        ("A : 'a' ; B : 'a' 'b'* 'c' ;", "abbbc", 5),
-        ("A : '\"' ~[\"]* '\"' ;", '"ab', 0),
-        ("A : D+ ; fragment D : [0-9] ;", "007", 3),
-        ("A : 'if' ;", "IF", 0),
-        ("A : . ;", "\n", 1),
-    ],
-)
-def test_the_longest_match(rules: str, text: str, end: int) -> None:
-    """The longest accepted text wins, and a start that leads nowhere is given back."""
-    assert end == automaton(rules).longest(text, 0)
-    assert end + 2 == automaton(rules).longest(f"? {text}", 2) or end == 0
-
-
-def test_case_is_ignored_where_the_grammar_says_so() -> None:
-    """``caseInsensitive`` holds for quoted text and for sets."""
-    folded = automaton("A : 'iF' [X-Z]+ ;", folded=True)
-    assert [5, 5, 0] == [folded.longest(t, 0) for t in ("IFxyz", "ifXYZ", "ıfxyz")]
-
-
-def test_what_a_match_begins_with() -> None:
-    """The first characters of all rules together, options that may be absent included."""
-    expected = normalised_ranges([(ord(c), ord(c)) for c in "abcxz"])
-    assert expected == first_characters(automaton("A : 'x'? [a-c] ; B : 'z' ;"))
 
 
 # ---------------------------------------------------------------------------- the pattern

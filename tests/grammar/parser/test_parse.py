@@ -61,19 +61,6 @@ def trees(krl_parser: Parser, corpus: Mapping[Path, str]) -> Mapping[Path, Tree]
 # ----------------------------------------------------------------------------- what they are
 
 
-def test_a_small_program(parser: Parser) -> None:
-    """Every rule and every token is there, in order, chains of rules included."""
-    tree = parsed(parser, "DEF A()\nX=1\nEND\n")
-    number: Plain = ("literal", "INTEGER")
-    for rule in "primary factor product sum conjunction disjunction expression".split():
-        number = (rule, number)
-    assignment = ("assignment", ("variable", "NAME"), "ASSIGN", number)
-    statement = ("statement", ("simpleStatement", assignment), ("eol", "NEWLINE"))
-    head = ["DEF", "NAME", "LPAREN", "RPAREN", ("eol", "NEWLINE")]
-    program = ("program", ("procedure", *head, statement, "END"))
-    assert ("module", program, "NEWLINE", "EOF") == plain(tree.root)
-
-
 def test_where_tokens_are(parser: Parser) -> None:
     """Lines and columns count from 1, offsets from 0, whatever the line ends are."""
     tree = parsed(parser, "\r\nDEF  A() ; x\r  \n\tX = 1\nEND")
@@ -94,17 +81,6 @@ def test_where_tokens_are(parser: Parser) -> None:
         ("EOF", "", 5, 4, 28),
     ] == found
     assert [" ; x", "  "] == [tree.gap(5), tree.gap(6)]
-
-
-def test_where_nodes_are(parser: Parser) -> None:
-    """A node knows its tokens and its text, with the comments within and not those around."""
-    tree = parsed(parser, "DEF A() ; one\nIF X THEN ; two\nEXIT ; three\nENDIF ; four\nEND ; five")
-    nodes = {n.rule: n for n in tree.root.walk() if isinstance(n, ParseNode)}
-    block = nodes["ifStatement"]
-    assert block.text == "IF X THEN ; two\nEXIT ; three\nENDIF"
-    assert (5, 12) == (block.first, block.stop)
-    assert tree.text[slice(*block.span)] == block.text
-    assert ["IF", "ENDIF"] == [tree.tokens[block.first].text, tree.tokens[block.stop - 1].text]
 
 
 def test_what_is_skipped_lies_between(trees: Mapping[Path, Tree]) -> None:
@@ -128,27 +104,6 @@ def test_nodes_nest(trees: Mapping[Path, Tree]) -> None:
                 assert node.stop == at
 
 
-def test_views_of_one_place_are_equal(parser: Parser) -> None:
-    """Asking twice gives equal nodes and tokens; another place or another tree does not."""
-    first, second = (parsed(parser, "DEF A()\nX=1\nX=1\nEND\n") for _ in range(2))
-    assert list(first.root.walk()) == list(first.root.walk())
-    assert len(set(first.root.walk())) == len(list(first.root.walk()))
-    assert first.root != second.root
-
-
-def test_lines_built_alike_share_their_outline(parser: Parser) -> None:
-    """What can be said of a rule from its outline has to be worked out once for all such lines."""
-    texts = ["DEF A()\nX=1\nY=2\nEND\n", "DEF B()\nLOOP\nZ=7\nENDLOOP\nEND\n"]
-    found = [
-        node.outline
-        for text in texts
-        for node in parsed(parser, text).root.walk()
-        if isinstance(node, ParseNode) and node.rule == "statement" and "LOOP" not in node.text
-    ]
-    assert 3 == len(found)
-    assert 1 == len(set(found))
-
-
 def test_inner_passes_chains_of_rules(parser: Parser) -> None:
     """From an expression the way leads at once to the first rule that has more than a rule."""
     tree = parsed(parser, "DEF A()\nX=1+Y[2]\nEND\n")
@@ -163,16 +118,6 @@ def test_inner_passes_chains_of_rules(parser: Parser) -> None:
             node = child  # noqa: PLW2901 - one step down the chain
 
 
-def test_a_rule_that_reads_nothing_is_there() -> None:
-    """An empty rule is a node without tokens, where the next token begins."""
-    rules = ["s : a b EOF", "a : A?", "b : a C a"]
-    assert ("s", ("a",), ("b", ("a",), "C", ("a",)), "EOF") == tree_of(rules, "C")
-    tree = parsed(Parser(Recognizer(grammar_of(*rules))), " C ")
-    found = [n for n in tree.root.walk() if isinstance(n, ParseNode) and n.rule == "a"]
-    assert [(0, 0), (0, 0), (1, 1)] == [(n.first, n.stop) for n in found]
-    assert [(1, 1), (1, 1), (3, 3)] == [n.span for n in found]
-
-
 def test_skipped_tokens_the_lexer_cuts_are_not_in_the_tree() -> None:
     """Where a comment begins like a token the lexer cuts it too; the tree is the same."""
     lexer = "A : 'a' ;\nDIVIDE : '/' ;\nNEWLINE : '\\n' ;\nCOMMENT : '//' ~[\\n]* -> skip ;\n"
@@ -185,17 +130,6 @@ def test_skipped_tokens_the_lexer_cuts_are_not_in_the_tree() -> None:
 
 
 # ------------------------------------------------------------------------------- no program
-
-
-def test_where_it_stops(parser: Parser, recognizer: Recognizer) -> None:
-    """A text that is no program gives the first token that cannot be there, and its state."""
-    stop = parser.parse("DEF A()\n  X=1 ;c\n FOO BAR\nEND\n")
-    assert isinstance(stop, Stop)
-    assert (3, 6, 22, "BAR") == (stop.line, stop.column, stop.offset, stop.text)
-    assert "=" in FailureFinder(recognizer).context(stop.state).expected
-    end = parser.parse("DEF A()\n")
-    assert isinstance(end, Stop)
-    assert (2, 1, 8, "") == (end.line, end.column, end.offset, end.text)
 
 
 def test_it_stops_where_the_recogniser_does(

@@ -12,7 +12,7 @@ from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar
 from grammar.parser import lazy_automaton
-from grammar.parser.lexer import EOF, ERROR
+from grammar.parser.lexer import EOF
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.sentences import Sentences
 from grammar.parser.shortest_paths import Paths
@@ -171,42 +171,6 @@ def test_configurations_are_what_a_state_is_made_of(chance: Random, mutated: Mut
 # ------------------------------------------------------------------------------ texts
 
 
-@pytest.mark.parametrize(
-    ("text", "accepted"),
-    [
-        ("DEF A()\nEND", True),
-        ("\n\ndef a ( )\r\n\r\rend ;x\n\n", True),
-        ("&ACCESS RVP\nDEF A()\nIF X THEN\nELSE\nENDIF\nEND\nDEF B()\nEND", True),
-        ("DEFDAT A\nDECL INT X=-1\nENDDAT\n", True),
-        ("", False),
-        ("DEF A()", False),
-        ("DEF A() END", False),
-        ("DEF A()\nX=1 ?\nEND", False),
-        ("DEF A()\nEND\nEND", False),
-    ],
-)
-def test_whole_texts(recognizer: Recognizer, text: str, accepted: bool) -> None:
-    """A text is a program or it is not; comments, blanks and the case of letters do not matter."""
-    assert accepted == recognizer.accepts(text)
-
-
-def test_kinds_of_a_text(recognizer: Recognizer) -> None:
-    """What is skipped is left out, what no rule knows is an error, and the file's end is last."""
-    names = ["NAME", "ASSIGN", "INTEGER", "NEWLINE"]
-    expected = [*kinds_of(recognizer, names), ERROR, EOF]
-    assert expected == recognizer.kinds(" x\t= 1 ;y\n ?")
-    assert [EOF] == recognizer.kinds(" ")
-
-
-def test_what_is_expected_after_a_header_line(recognizer: Recognizer) -> None:
-    """The expected set holds what an outer rule goes on with too, once the inner one may end."""
-    kinds = kinds_of(recognizer, ["HEADER", "NEWLINE"])
-    state, index = recognizer.run(recognizer.start, kinds)
-    assert index is None
-    expected = {"HEADER", "NEWLINE", "DEF", "DEFDAT"}
-    assert expected == names_of(recognizer, recognizer.expected(state))
-
-
 def test_one_rule_alone(recognizer: Recognizer) -> None:
     """A rule is read on its own from its start, and `ends` says where it may be complete."""
     variable = ["NAME", "LBRACKET", "INTEGER", "RBRACKET", "DOT", "NAME"]
@@ -231,15 +195,6 @@ def test_a_rule_alone_teaches_nothing_wrong() -> None:
     texts = ["ba", "bab", "baab", "bb"]
     assert [True, True, True, False] == [recognizer.accepts(f"\n{text}") for text in texts]
     assert recognizer.run(alone, kinds_of(recognizer, ["NEWLINE", "B", "A", "A"]))[1] == 3
-
-
-def test_a_rule_may_be_empty() -> None:
-    """Rules that match nothing are passed, however many of them stand in a row."""
-    recognizer = Recognizer(
-        read("grammar T;\ns : n (n n)* A n EOF ;\nn : m m ;\nm : B? ;\nA : 'a' ;\nB : 'b' ;\n")
-    )
-    assert [True, True, False] == [recognizer.accepts(t) for t in ("a", "bbbabb", "bbb")]
-    assert {"A", "B"} == names_of(recognizer, recognizer.expected(recognizer.start))
 
 
 # ------------------------------------------------------------------------------- depth
@@ -307,31 +262,6 @@ def test_right_recursion_adds_no_sets_of_configurations(name: str) -> None:
         found.add((recognizer.size, deepest))
         assert 1 == len(found), depth
         assert deepest < 40
-
-
-def test_signs_add_no_sets_of_configurations() -> None:
-    """An operand may have thousands of signs, and whatever follows it is read as behind one."""
-    sizes = set()
-    for depth in (200, 2_000, 20_000):
-        recognizer = Recognizer(OWN["preliminary"].grammar)
-        line = "X=" + "NOT " * depth + "(A+" + "NOT " * depth + "B) AND C"
-        assert recognizer.accepts(f"DEF A()\n{line}\nEND\n")
-        kinds = recognizer.kinds(f"DEF A()\n{line} D\nEND\n")
-        assert len(kinds) - 5 == recognizer.run(recognizer.start, kinds)[1]
-        sizes.add(recognizer.size)
-        assert 1 == len(sizes), depth
-
-
-def test_a_way_into_right_recursion(recognizer: Recognizer) -> None:
-    """However deep it is, its configuration is one that some program comes to."""
-    kinds = recognizer.kinds("DEF A()\nX=" + "NOT " * 300)[:-1]
-    state, index = recognizer.run(recognizer.start, kinds)
-    assert index is None
-    (frames,) = recognizer.frames(state)
-    there, index = recognizer.run(recognizer.start, Paths(recognizer.network).prefix(frames))
-    assert index is None
-    assert (frames,) == recognizer.frames(there)
-    assert recognizer.expected(state) == recognizer.expected(there)
 
 
 def test_frames_that_read_something_are_counted() -> None:

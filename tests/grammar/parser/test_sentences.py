@@ -111,17 +111,6 @@ def test_random_sentences_of_random_grammars(
         assert parse(grammar, [*sentences.random(chance, 10), "EOF"])[0]
 
 
-@pytest.mark.parametrize("name", OWN)
-def test_programs_through_all_rules_use_all_tokens(name: str) -> None:
-    """Together the programs through each rule leave no token of the grammar out."""
-    grammar = OWN[name].grammar
-    sentences = Sentences(grammar)
-    programs = [p for rule in sentences.reachable for p in sentences.through(rule)]
-    skipped = {r.name for r in grammar.rules if r.is_skipped or r.is_fragment}
-    names = {r.name for r in grammar.rules if r.is_lexer} - skipped
-    assert names == {token for program in programs for token in program}
-
-
 def test_random_programs_repeat_by_seed(preliminary: Grammar) -> None:
     """The same seed gives the same programs, another seed others."""
     programs = [

@@ -176,39 +176,6 @@ def test_system_data_of_r1_and_steu_are_shared() -> None:
     assert "cell/Steu/Mada/$custom.dat" == declared_in(use(of, "cell/R1/Program/a.src", "N"))
 
 
-def test_files_around_a_backup_are_another_project() -> None:
-    """Templates and notes beside a backup are no part of the robot's program."""
-    found = workspace(
-        {
-            "x/KRC/R1/Program/a.src": src("A()"),
-            "x/C/KRC/Roboter/Template/a.src": src("A()"),
-            "x/a.src": src("A()"),
-        }
-    )
-    assert ["x", "x/KRC"] == sorted(of.root for of in found.projects)
-    assert [1, 2] == sorted(len(of.modules) for of in found.projects)
-
-
-def test_folder_that_only_looks_like_a_drive() -> None:
-    """Robots called R1 and R2 with backups of their own are three projects, not one."""
-    paths = ("R1/old/KRC/R1/Program/a.src", "R1/new/KRC/R1/Program/a.src", "R2/KRC/R1/a.src")
-    found = workspace({path: src("A()") for path in paths})
-    assert {"R1/old/KRC", "R1/new/KRC", "R2/KRC"} == set(roots(found))
-
-
-def test_backup_inside_a_backup() -> None:
-    """The innermost drive counts."""
-    paths = ("KRC/R1/Program/a.src", "KRC/R1/Program/save/KRC/R1/Program/a.src")
-    assert 2 == len(workspace({path: src("A()") for path in paths}).projects)
-
-
-def test_loose_files_are_one_project() -> None:
-    """Files without the layout of a controller see each other across folders."""
-    of = project({"lib/b.src": src("B()"), "main/a.src": src("A()", "B()"), "c.src": src("C()")})
-    assert not of.is_controller
-    assert "lib/b.src" == declared_in(use(of, "main/a.src", "B"))
-
-
 def test_loose_files_with_several_configs() -> None:
     """A $CONFIG begins a project where there are several of them."""
     config = dat("$CONFIG", "INT N=1")

@@ -8,7 +8,6 @@ import pytest
 from grammar.semantics.assignability import (
     assignable,
     case_label,
-    condition,
     declarable,
     initial,
     passable,
@@ -20,8 +19,6 @@ from grammar.semantics.operations import (
     LOGICAL,
     ORDER,
     binary,
-    component,
-    subscript,
     unary,
 )
 from grammar.semantics.predefined import System
@@ -119,38 +116,6 @@ def test_no_pair_of_types_is_left_without_an_answer() -> None:
             assert isinstance(verdict.is_unconfirmed, bool)
 
 
-@pytest.mark.parametrize(
-    ("to", "value", "message", "rule"),
-    [
-        (INT, BOOL, 1446, "ARI-11"),
-        (INT, Text(4), 1446, "ARI-11"),
-        (BOOL, INT, 1446, "ARI-11"),
-        (INT, FRAME, 1446, "ARI-11"),
-        (FRAME, REAL, 1446, "ARI-11"),
-        (FRAME, E6AXIS, 1446, "ARI-11"),
-        (INT, Constant("T1"), 1446, "TYP-16"),
-        (ORI, Constant("CONST"), 2296, "TYP-20"),
-        (ORI, IPO, 1446, "ARI-11"),
-        (CHAR, Text(2), None, "TYP-03"),
-        (FRAME, Aggregate(("X", "S")), 2125, "TYP-20"),
-        (POS, Aggregate(("E1",)), 2125, "TYP-20"),
-        (FRAME, Aggregate(("A1",), AXIS), 1446, "ARI-11"),  # type: ignore[arg-type]
-        (INT, Aggregate(("X",)), 1446, "ARI-11"),
-        (INT, INTS, 2052, "TYP-20"),
-        (INTS, INT, 2052, "TYP-20"),
-        (INTS, GRID, 1446, "ARI-11"),
-        (PAIR, FRAME, 1446, "ARI-11"),
-    ],
-)
-def test_what_cannot_be_assigned(to: Type, value: Type, message: int | None, rule: str) -> None:
-    """A fault has the controller's number where there is one, and the rule that says so."""
-    verdict = assignable(to, value)
-    assert (False, message) == (verdict.is_fine, verdict.message)
-    assert rule in verdict.rules
-    assert not verdict.is_unconfirmed
-    assert "TYP-12" in initial(to, value).rules
-
-
 def test_an_open_structure_takes_what_another_of_its_name_has() -> None:
     """A type that a file may declare otherwise fits to its namesake."""
     theirs = Structure("PDAT", (Member("VEL", REAL), Member("NEW", INT)))
@@ -170,47 +135,6 @@ def test_arrays_of_what_is_not_known_fit_to_arrays() -> None:
 
 
 # ------------------------------------------------------------------------------- parameters
-
-
-@pytest.mark.parametrize(
-    ("parameter", "argument", "by_value", "by_reference"),
-    [
-        (INT, REAL, True, False),
-        (REAL, INT, True, False),
-        (INT, INT, True, True),
-        (INT, BOOL, False, False),
-        (FRAME, E6POS, True, False),
-        (NAME, Array(CHAR, (80,)), True, True),
-        (Array(INT, (None,)), INTS, True, True),
-        (Array(INT, (None,)), GRID, False, False),
-        (Array(REAL, (None,)), INTS, False, False),
-        (INT, INTS, False, False),
-        (ORI, ORI, True, True),
-        (ORI, IPO, False, False),
-    ],
-)
-def test_in_converts_and_out_must_match(
-    parameter: Type, argument: Type, by_value: bool, by_reference: bool
-) -> None:
-    """A variable passed :OUT has the type of the parameter; sizes may differ [ARI-04]."""
-    assert by_value == bool(passable(parameter, argument, is_out=False, is_variable=True))
-    assert by_reference == bool(passable(parameter, argument, is_out=True, is_variable=True))
-
-
-def test_faults_of_arguments_have_their_numbers() -> None:
-    """2274 is the fault of an argument, unless a constant or component is the fault."""
-    wrong = passable(INT, BOOL, is_out=False, is_variable=True)
-    assert (2274, True) == (wrong.message, "ARI-04" in wrong.rules)
-    assert 2274 == passable(INT, REAL, is_out=True, is_variable=True).message
-    assert 2296 == passable(ORI, Constant("NO"), is_out=False, is_variable=False).message
-    assert 2052 == passable(INT, INTS, is_out=True, is_variable=True).message
-
-
-def test_arrays_are_passed_out_only() -> None:
-    """A parameter :IN is no array [SCO-07]."""
-    assert ("SCO-07",) == declarable(INTS, is_out=False).rules
-    assert declarable(INTS, is_out=True)
-    assert declarable(INT, is_out=False)
 
 
 def test_texts_are_passed_in() -> None:
@@ -235,71 +159,7 @@ def test_structures_within_structures_are_compared_once() -> None:
     assert tower(INT) != tower(REAL)
 
 
-# ---------------------------------------------------------------------------------- places
-
-
-def test_places_cite_the_rules_of_their_statement() -> None:
-    """The rule of the statement stands before the general one."""
-    assert ("CTL-01", "ARI-11") == condition(INT, "CTL-01").rules
-
-
-@pytest.mark.parametrize(
-    ("chosen", "label", "message"),
-    [
-        (INT, INT, None),
-        (CHAR, Text(1), None),
-        (ORI, Constant("VAR"), None),
-        (UNKNOWN, Constant("ANY"), None),
-        (INT, Text(4), 2255),
-        (INT, REAL, 2255),
-        (INT, Constant("VAR"), 2255),
-        (ORI, INT, 2255),
-        (ORI, Constant("CONST"), 2296),
-        (REAL, INT, None),  # the selector is the fault, and told once
-    ],
-)
-def test_labels_of_case(chosen: Type, label: Type, message: int | None) -> None:
-    """A label has the type of the selector [CTL-03]."""
-    verdict = case_label(chosen, label)
-    assert (message is None, message) == (verdict.is_fine, verdict.message)
-
-
 # ------------------------------------------------------------------------------- operators
-
-
-@pytest.mark.parametrize(
-    ("left", "operator", "right", "message", "is_unconfirmed"),
-    [
-        (INT, "+", BOOL, 2256, False),
-        (FRAME, "+", FRAME, 2256, False),
-        (Text(4), "*", INT, 2256, False),
-        (INTS, "+", INT, 2052, False),
-        (CHAR, "-", INT, 2256, True),  # no manual at hand says so
-        (REAL, "B_OR", INT, None, False),
-        (BOOL, "B_AND", BOOL, None, False),
-        (BOOL, "AND", REAL, None, False),
-        (INT, "OR", BOOL, None, False),
-        (BOOL, "==", INT, None, False),
-        (Text(4), "==", INT, None, False),
-        (ORI, "==", INT, None, False),
-        (BOOL, "<", BOOL, None, True),  # ARI-10 alone is recollection
-        (ORI, ">", Constant("VAR"), None, True),
-        (FRAME, "==", FRAME, None, True),
-        (NAME, "==", NAME, None, True),
-        (ORI, "==", Constant("CONST"), 2296, False),
-        (INTS, "==", INT, 2052, False),
-        (INT, ":", FRAME, None, True),
-        (FRAME, ":", AXIS, None, True),
-    ],
-)
-def test_wrong_operands(
-    left: Type, operator: str, right: Type, message: int | None, is_unconfirmed: bool
-) -> None:
-    """A wrong operand is refused with its rule, and nothing follows from the result."""
-    typed = binary(operator, left, right)
-    assert (False, message) == (typed.verdict.is_fine, typed.verdict.message)
-    assert is_unconfirmed == typed.verdict.is_unconfirmed
-    assert UNKNOWN == typed.type
 
 
 def test_what_is_no_operator_is_a_mistake_of_ours() -> None:
@@ -311,35 +171,6 @@ def test_what_is_no_operator_is_a_mistake_of_ours() -> None:
 
 
 # --------------------------------------------------------------------- indices, components
-
-
-@pytest.mark.parametrize(
-    ("array", "given", "message"),
-    [
-        (INT, [True], 2295),
-        (FRAME, [False], 2295),
-        (INTS, [True, True], None),
-        (GRID, [True], None),
-    ],
-)
-def test_wrong_indices(array: Type, given: list[bool], message: int | None) -> None:
-    """An array has as many indices as dimensions; nothing else has any [TYP-08, TYP-20]."""
-    typed = subscript(array, given)
-    assert (False, message) == (typed.verdict.is_fine, typed.verdict.message)
-    assert "TYP-20" in typed.verdict.rules
-    assert UNKNOWN == typed.type
-
-
-def test_components() -> None:
-    """A component has its type, in any letter case; what has none is message 2125 [TYP-20]."""
-    assert REAL == component(POS, "x").type
-    assert INT == component(POS, "T").type
-    assert UNKNOWN == component(UNKNOWN, "ANY").type
-    assert FRAME == component(PAIR, "right").type
-    for type_ in (FRAME, INT, ORI):
-        typed = component(type_, "S")
-        assert (False, 2125) == (typed.verdict.is_fine, typed.verdict.message)
-    assert 2052 == component(Array(FRAME, (4,)), "X").verdict.message
 
 
 def test_a_verdict_without_rules_is_sure() -> None:

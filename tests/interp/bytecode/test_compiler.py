@@ -25,11 +25,11 @@ from interp.bytecode.image.writer import write_image
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
 from interp.executors import Prepared
-from interp.port.events import ExecutorEvent, Sink
+from interp.port.events import Sink
 from interp.port.executor import Executor
-from interp.port.requests import At, Fail, Invoke, SetCyclicFlag, StopAdvance, Write
+from interp.port.requests import At, Fail, Write
 from interp.program.load import CheckedProgram, Limits, load
-from interp.values.faults import BudgetExhausted, Fault, LinkError
+from interp.values.faults import LinkError
 from support.files.decode import decode
 
 PROGRAMS = Path(__file__).parents[3] / "corpus" / "programs"
@@ -243,29 +243,6 @@ def test_round_trip() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "slug"),
-    [
-        ("DEF main()\nmain()\nEND\n", "stack"),
-        ("DEF main()\nSub()\nEND\nDEF Sub()\nDECL INT A[2000000]\nEND\n", "stack"),
-        ("DEF main()\nSub()\nEND\nDEF Sub()\nDECL INT A[300000]\nSub()\nEND\n", "stack"),
-        ("DEF main()\nDECL INT A[3],I\nI=4\nA[I]=1\nEND\n", "index"),
-        ("DEFFCT INT main()\nENDFCT\n", "no_result"),
-    ],
-)
-def test_faults(text: str, slug: str) -> None:
-    """What cannot go on ends with the same fault."""
-    error = _last(text)
-    assert isinstance(error, Fault)
-    assert slug == error.slug
-
-
-@pytest.mark.parametrize("body", ["LOOP\nENDLOOP", "a:\nGOTO a", "WHILE TRUE\nENDWHILE"])
-def test_endless_loops(body: str) -> None:
-    """What never ends uses up its statements [CTL-02, CTL-07]."""
-    assert isinstance(_last(f"DEF main()\n{body}\nEND\n"), BudgetExhausted)
-
-
-@pytest.mark.parametrize(
     ("text", "reason"),
     [
         ("DEF main()\nDECL INT A[2000000]\nEND\n", "the variables of main are too large"),
@@ -329,30 +306,6 @@ def test_huge_data_lists() -> None:
 # ------------------------------------------------------------------------------ requests of late
 
 
-def test_cyclic_flags_and_paths() -> None:
-    """A cyclic flag receives a condition, PULSE the path of its output [IOT-11, TIM-05]."""
-    text = "DEF main()\nDECL INT I\nI=2\n$CYCFLAG[I]=$IN[1]\nPULSE($OUT[I],TRUE,0.5)\nEND\n"
-    tree, machine = _observed(_loaded(text))
-    assert None is difference("", tree, machine)
-    assert [2] == [one.number for one in machine.steps if isinstance(one, SetCyclicFlag)]
-    paths = [one.paths for one in machine.steps if isinstance(one, Invoke)]
-    assert [(("$OUT", 2), None, None)] == paths
-
-
-def test_imports_stop_the_advance_run() -> None:
-    """An imported variable is asked for by itself first [ADV-05]."""
-    text = "DEF main()\nDECL INT I\nI=MINE+1\nMINE=I\nEND\n"
-    tree, machine = _observed(
-        _loaded(
-            text,
-            main_dat="DEFDAT main\nIMPORT INT MINE IS /R1/OTHER..GIVEN\nENDDAT\n",
-            other_dat="DEFDAT other PUBLIC\nINT GIVEN=4\nENDDAT\n",
-        )
-    )
-    assert None is difference("", tree, machine)
-    assert 2 == sum(isinstance(one, StopAdvance) for one in machine.steps)
-
-
 def test_companion_shares_the_data_lists() -> None:
     """Another machine sees what the first one assigned, and has frames of its own [SUB-01]."""
     program = _loaded(
@@ -367,18 +320,6 @@ def test_companion_shares_the_data_lists() -> None:
         one.advance()
         told.append(machine.data()[0])
     assert [6, 6, 60, 61] == told
-
-
-def test_formal_arrays_passed_on() -> None:
-    """A formal array is passed on :IN to what does not change it [SCO-07]."""
-    text = (
-        'DEF main()\nDECL CHAR S[5]\nS[]="abc"\nOuter(S[])\nEND\n'
-        "DEF Outer(V[]:IN)\nDECL CHAR V[]\nInner(V[])\nEND\n"
-        "DEF Inner(V[]:IN)\nDECL CHAR V[]\nDECL INT I\nI=StrLen(V[])\nEND\n"
-    )
-    tree, machine = _observed(_loaded(text))
-    assert None is difference("", tree, machine)
-    assert 3 in [one.value for one in machine.steps if isinstance(one, ExecutorEvent)]
 
 
 # ------------------------------------------------------------------------------ real programs

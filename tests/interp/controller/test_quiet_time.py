@@ -214,22 +214,6 @@ def test_few_requests_a_slice(requests: str, most: int) -> None:
     _assert_same(told, quick)
 
 
-def test_few_slices_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A hundred slices in which nothing can happen are not asked for one by one."""
-    asked: list[int] = []
-    slice_ = Waits.slice
-
-    def counted(self: Waits, task: Any, request: Any) -> Any:
-        asked.append(request.count)
-        return slice_(self, task, request)
-
-    monkeypatch.setattr(Waits, "slice", counted)
-    text = "DEF main ( )\nINT I\nFOR I=1 TO 100000\nENDFOR\nEND\n"
-    program = load([Source(text, "main.src")], "main.src")
-    run_program(program, RunSetup(executor=available()[-1], is_traced=False))
-    assert (100, True) == (sum(asked), len(asked) < 5)
-
-
 @pytest.mark.parametrize("executor", [name for name in available() if name != "tree"])
 def test_computing_between_requests(monkeypatch: pytest.MonkeyPatch, executor: str) -> None:
     """What passes between two requests of a program that runs alone is asked for once."""

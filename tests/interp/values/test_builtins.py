@@ -1,7 +1,6 @@
 """Predefined functions: numbers, random numbers, texts, conversions, variables by name."""
 
 import math
-from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -49,12 +48,6 @@ def _call(name: str, *arguments: Any) -> Outcome:
 
 def _result(name: str, *arguments: Any) -> Any:
     return _call(name, *arguments)[0]
-
-
-def _slug(name: str, *arguments: Any) -> str:
-    with pytest.raises(Fault) as caught:
-        _call(name, *arguments)
-    return caught.value.slug
 
 
 def _text(size: int, text: str) -> ArrayValue:
@@ -194,19 +187,3 @@ def test_changes_are_reported() -> None:
     for name, places in (("STRADD", [0]), ("STRTOINT", [1]), ("STRLEN", []), ("SWRITE", [0, 1, 2])):
         assert places == [place for place in range(9) if is_out(name, place)]
     assert [1, 2, 4, 5] == [place for place in range(6) if is_out("SREAD", place)]
-
-
-@pytest.mark.parametrize(
-    ("name", "arguments", "slug"),
-    [
-        *(("SIN", (), "argument"), ("SIN", (1.0, 2.0), "argument"), ("STRLEN", (1,), "argument")),
-        *(("STRADD", (1, "a"), "argument"), ("STRDECLLEN", ("ab",), "argument")),
-        *(("SIN", (None,), "uninitialised"), ("STRLEN", (None,), "uninitialised")),
-        *(("SIN", (True,), "inadmissible"), ("SQRT", ("A",), "inadmissible")),
-        ("STRFIND", (1, "a", "a", 1), "inadmissible"),
-        ("STRCLEAR", (None,), "argument"),
-    ],
-)
-def test_wrong_arguments_fault(name: str, arguments: Sequence[Any], slug: str) -> None:
-    """Too few, too many, missing and wrong arguments are faults [ARI-04, TYP-13]."""
-    assert slug == _slug(name, *arguments)

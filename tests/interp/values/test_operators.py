@@ -22,7 +22,6 @@ from grammar.semantics.types import (
     Type,
 )
 from interp.values.faults import FAULTS, Fault
-from interp.values.geometric_operator import inverted
 from interp.values.json_form import from_json
 from interp.values.operators import (
     BINARY,
@@ -33,7 +32,6 @@ from interp.values.operators import (
     apply_unary,
     kind_of,
     kind_of_value,
-    select,
 )
 from interp.values.values import REAL_MAX, StructureValue, Value, constant, single
 
@@ -61,75 +59,12 @@ def _pose(name: str, *numbers: float, **others: float) -> StructureValue:
 _SAMPLES: list[Value] = [1, 1.0, True, "A", RED, _pose("FRAME", 1, 2, 3, 0, 0, 0)]
 
 
-@pytest.mark.parametrize("operator", sorted(BINARY))
-def test_operators_refuse_other_operands(operator: str) -> None:
-    """Operators work on the operands that the checker allows, and fault on others [ARI-11]."""
-    for left in _SAMPLES:
-        for right in _SAMPLES:
-            types = (_type_of(left), _type_of(right))
-            verdict = operations.binary(operator, *types).verdict
-            if verdict:
-                apply(operator, left, right)
-                continue
-            with pytest.raises(Fault) as caught:
-                apply(operator, left, right)
-            assert "operand" == caught.value.slug
-
-
-@pytest.mark.parametrize("operator", ["+", "-", "NOT", "B_NOT"])
-def test_signs_refuse_other_operands(operator: str) -> None:
-    """Signs, NOT and B_NOT fault on what the checker refuses [ARI-11]."""
-    for operand in _SAMPLES:
-        if operations.unary(operator, _type_of(operand)).verdict:
-            apply_unary(operator, operand)
-            continue
-        with pytest.raises(Fault) as caught:
-            apply_unary(operator, operand)
-        assert "operand" == caught.value.slug
-
-
 def _type_of(value: Value) -> Type:
     scalars: dict[type, Type] = {int: INT, float: REAL, bool: BOOL, str: CHAR}
     return scalars.get(type(value)) or value.type  # type: ignore[union-attr]
 
 
 # ---------------------------------------------------------------------------------- selection
-
-
-@pytest.mark.parametrize(
-    ("operator", "kinds", "conversions", "primitive"),
-    [
-        ("+", ("INT", "INT"), ((), ()), "add_int"),
-        ("+", ("INT", "REAL"), (("int_to_real",), ()), "add_real"),
-        ("/", ("REAL", "INT"), ((), ("int_to_real",)), "div_real"),
-        ("<", ("CHAR", "CHAR"), (("char_to_int",), ("char_to_int",)), "lt_int"),
-        ("<", ("CHAR", "INT"), (("char_to_int",), ()), "lt_int"),
-        ("==", ("REAL", "CHAR"), ((), ("char_to_int", "int_to_real")), "eq_real"),
-        ("==", ("ENUM", "ENUM"), ((), ()), "eq_enum"),
-        (":", ("FRAME", "FRAME"), ((), ()), "compose"),
-        ("-", ("REAL",), ((),), "neg_real"),
-        ("+", ("INT",), ((),), None),
-    ],
-)
-def test_selection_reports_conversions(
-    operator: str,
-    kinds: tuple[Kind, ...],
-    conversions: tuple[tuple[str, ...], ...],
-    primitive: str | None,
-) -> None:
-    """From the kinds of the operands follow the conversions and the primitive [ARI-01, ARI-10]."""
-    found = select(operator, *kinds)
-    assert found is not None
-    steps = tuple(tuple(step.name for step in one) for one in found.conversions)
-    assert conversions == steps
-    assert primitive == (None if found.primitive is None else found.primitive.name)
-
-
-@pytest.mark.parametrize(("operator", "kinds"), [("%", ("INT", "INT")), ("*", ("INT",))])
-def test_selection_of_no_operator(operator: str, kinds: tuple[Kind, ...]) -> None:
-    """What is no operator, or not one of so many operands, is our own mistake."""
-    with pytest.raises(ValueError, match="is no operator"):
-        select(operator, *kinds)
 
 
 def test_kinds_of_values_are_those_of_their_types() -> None:
@@ -298,23 +233,6 @@ def test_composition_is_the_product_of_matrices(
     """A:B is the product of the matrices with R = Rz(A)·Ry(B)·Rx(C) [ARI-08, ARI-09]."""
     expected = _product(_matrix(left), _matrix(right))
     assert _is_near(expected, _matrix(_composed(left, right)), 10)
-
-
-@given(POSES, POSES, POSES)
-def test_composition_is_associative(
-    one: StructureValue, two: StructureValue, three: StructureValue
-) -> None:
-    """(A:B):C and A:(B:C) are the same pose within what singles keep [ARI-08]."""
-    left, right = _composed(_composed(one, two), three), _composed(one, _composed(two, three))
-    assert _is_near(_matrix(left), _matrix(right), 100)
-
-
-@given(POSES)
-def test_inverse_undoes(pose: StructureValue) -> None:
-    """A pose composed with its inverse, on either side, is zero [ARI-08, FCT-03]."""
-    none = _matrix(_pose("FRAME", 0, 0, 0, 0, 0, 0))
-    assert _is_near(none, _matrix(_composed(pose, inverted(pose))), 100)
-    assert _is_near(none, _matrix(_composed(inverted(pose), pose)), 100)
 
 
 @given(TURNS, TURNS, TURNS)

@@ -27,17 +27,6 @@ def distance(left: Pose, right: Pose) -> float:
     )
 
 
-def test_turns_about_z_then_y_then_x() -> None:
-    """A, B and C turn about Z, the new Y and the new X [ARI-09]."""
-    about_z, about_y, about_x = Pose.of(a=20), Pose.of(b=-70), Pose.of(c=130)
-    assert distance(about_z @ about_y @ about_x, Pose.of(a=20, b=-70, c=130)) < 1e-15
-
-
-def test_the_right_frame_is_expressed_in_the_left_one() -> None:
-    """10 mm along X of a frame that is turned by 90 degrees about Z lie along Y [ARI-08]."""
-    assert (100, 210, 300) == (Pose.of(100, 200, 300, a=90) @ Pose.of(10)).position
-
-
 @pytest.mark.parametrize(("degrees", "quarter"), [(0, 0), (90, 1), (-180, 2), (270, 3), (1170, 1)])
 def test_quarter_turns_are_exact(degrees: float, quarter: int) -> None:
     """Sine and cosine of multiples of 90 degrees are 0, 1 or -1, and zeros have no sign."""
@@ -84,10 +73,3 @@ def test_a_is_zero_where_only_the_sum_counts() -> None:
     a, b, c = Pose.of(a=30, b=90, c=50).angles
     assert (0, 90) == (a, b)
     assert 20 == pytest.approx(c)
-
-
-def test_matrix_there_and_back() -> None:
-    """A pose is its matrix."""
-    pose = Pose.of(1, 2, 3, 40, 50, 60)
-    assert pose == Pose.from_matrix(pose.matrix)
-    assert (0.0, 0.0, 0.0, 1.0) == pose.matrix[3]

@@ -28,15 +28,9 @@ from interp.values.json_form import from_json, real_text, to_json
 from interp.values.values import (
     REAL_MAX,
     ArrayValue,
-    EnumValue,
-    StructureValue,
     Value,
-    constant,
     copied,
     empty,
-    fill,
-    has_value,
-    member_place,
     set_text,
     single,
     text_of,
@@ -69,10 +63,6 @@ def _array(element: Type, *sizes: int) -> ArrayValue:
     array = empty(Array(element, sizes))
     assert isinstance(array, ArrayValue)
     return array
-
-
-def _read(type_: Type, data: Any) -> Any:
-    return from_json(type_, data)
 
 
 def _numbers(*values: int | None) -> ArrayValue:
@@ -123,140 +113,6 @@ def test_what_is_not_known_cannot_be_made(type_: Type) -> None:
         empty(type_)
     with pytest.raises(LinkError):
         zero(type_)
-
-
-def test_members_are_found_in_any_letter_case() -> None:
-    """A member is found by its name, whose letter case does not matter [TYP-05]."""
-    load = zero(LOAD)
-    assert isinstance(load, StructureValue)
-    load.set("m", 2.5)
-    assert 2.5 == load.get("M")
-    assert 1 == member_place(LOAD, "Cm")
-    with pytest.raises(LinkError):
-        member_place(LOAD, "X")
-
-
-def test_constants_are_found_in_any_letter_case() -> None:
-    """A constant has its place in the enumeration, and keeps its spelling [TYP-05, TYP-16]."""
-    green = constant(COLOUR, "GREEN")
-    assert EnumValue(COLOUR, 1) == green
-    assert "Green" == green.name
-    assert "#Green" == repr(green)
-    with pytest.raises(LinkError):
-        constant(COLOUR, "PINK")
-
-
-# ---------------------------------------------------------------------------------- arrays
-
-
-def test_part_of_an_array_is_no_copy() -> None:
-    """A row is the same elements as in the array, with indices of its own [TYP-11]."""
-    names = _array(CHAR, 3, 4)
-    row = names.part(2)
-    set_text(row, "abc")
-    assert "b" == names.get(2, 2)
-    assert [None] * 4 == list(names.part(1))
-    assert "abc" == text_of(names.part(2))
-    names.set("z", 2, 1)
-    assert "zbc" == text_of(row)
-    with pytest.raises(Fault):
-        row.get(5)
-    with pytest.raises(Fault):
-        names.part(4)
-    assert 18 == _array(INT, 3, 4, 2).part(3, 2).base
-
-
-def test_arrays_are_equal_by_elements() -> None:
-    """A part of an array equals an array of the same size with the same elements."""
-    names = _array(CHAR, 2, 3)
-    set_text(names.part(2), "ab")
-    assert _text(3, "ab") == names.part(2)
-    assert _text(3, "ab") != names.part(1)
-    assert _text(4, "ab") != names.part(2)
-
-
-# ---------------------------------------------------------------------------------- copies
-
-
-def test_copies_share_nothing() -> None:
-    """Changing a copy, however deep, does not change what it was copied from."""
-    boxes = _array(BOX, 2)
-    box = boxes.get(1)
-    assert isinstance(box, StructureValue)
-    fill(box, _read(BOX, {"FIRST": {"COUNT": 1, "NAME": "ab"}, "WEIGHT": 2.0, "C": "#RED"}))
-    copy = copied(boxes)
-    assert copy == boxes
-    copy.get(1).get("FIRST").get("NAME").set("x", 1)
-    copy.get(1).set("WEIGHT", 3.0)
-    assert 'ab"' in rendered(boxes)
-    assert 2.0 == box.get("WEIGHT")
-
-
-def test_fill_keeps_references() -> None:
-    """Filling a structure writes into its parts, so who holds a part sees the new value."""
-    box = empty(BOX)
-    assert isinstance(box, StructureValue)
-    first = box.get("FIRST")
-    assert isinstance(first, StructureValue)
-    name = first.get("NAME")
-    assert isinstance(name, ArrayValue)
-    fill(box, _read(BOX, {"FIRST": {"COUNT": 7, "NAME": "xy"}}))
-    assert first is box.get("FIRST")
-    assert "xy" == text_of(name)
-    assert 7 == first.get("COUNT")
-    fill(box, _read(BOX, {}))
-    assert not has_value(first)
-
-
-def test_fill_copies_what_has_no_value() -> None:
-    """Parts without a value are assigned like others, without a fault."""
-    target = _read(FRAME, dict.fromkeys("XYZABC", 1))
-    fill(target, _read(FRAME, {"X": 5}))
-    assert {"X": 5.0, **dict.fromkeys("YZABC")} == to_json(target)
-
-
-# ---------------------------------------------------------------------------------- conversion
-
-
-def test_arrays_take_what_fits() -> None:
-    """An array of one dimension takes the first elements of another; the rest has no value."""
-    target = _numbers(9, 9, 9)
-    fill(target, _numbers(1, 2))
-    assert [1, 2, None] == list(target)
-    fill(target, _numbers(4, None, 6, 7))
-    assert [4, None, 6] == list(target)
-    with pytest.raises(Fault) as caught:
-        fill(_array(INT, 2, 3), _array(INT, 3, 2))
-    assert 1446 == caught.value.number
-
-
-def test_row_takes_no_more_than_it_has() -> None:
-    """A long text in a row of an array leaves the next row alone [TYP-11]."""
-    names = _array(CHAR, 2, 3)
-    set_text(names.part(2), "xyz")
-    fill(names.part(1), "abcdef")
-    assert ["abc", "xyz"] == to_json(names)
-    other = _numbers(1, 2, 3)
-    fill(ArrayValue(Array(INT, (2,)), other.elements, 1), _numbers(8))
-    assert [1, 8, None] == list(other)
-
-
-def test_structures_behind_the_end_lose_their_values() -> None:
-    """A shorter array leaves no value in the structures that it has nothing for [TYP-13]."""
-    target = _read(Array(PART, (2,)), [{"COUNT": 1, "NAME": "a"}, {"COUNT": 2, "NAME": "b"}])
-    second = target.get(2)
-    fill(target, _read(Array(PART, (1,)), [{"COUNT": 9, "NAME": "z"}]))
-    assert [{"COUNT": 9, "NAME": "z"}, {"COUNT": None, "NAME": ""}] == to_json(target)
-    assert second is target.get(2)
-
-
-def test_array_may_be_filled_with_itself() -> None:
-    """Filling an array or a structure with itself changes nothing."""
-    array, frame = _numbers(1, 2, None), _read(FRAME, {"X": 1})
-    fill(array, array)
-    fill(frame, frame)
-    assert [1, 2, None] == list(array)
-    assert 1.0 == frame.get("X")
 
 
 # ---------------------------------------------------------------------------------- texts

@@ -76,29 +76,6 @@ def test_the_header_of_a_block_gets_a_part(text: str) -> None:
     assert wider.accepts(text)
 
 
-def test_failures_mended_by_one_edit_are_one_cluster() -> None:
-    """What a person would call one missing construct is one cluster, whatever the names in it."""
-    found = clusters_of("DECL INT A,B", "DECL REAL X,Y,Z", "DECL BOOL ON_OFF,OLD", "HALT")
-    assert [{"000.src", "001.src", "002.src"}] == [files(c) for c in found.ranked]
-    assert ["DECL … ,"] == [c.signature for c in found.ranked]
-
-
-def test_failures_mended_by_different_edits_are_different_clusters() -> None:
-    """Two missing constructs are two clusters, in one file too."""
-    both = "DECL INT A,B\nRETURN 1"
-    found = clusters_of("DECL INT A,B", "RETURN 1", both)
-    assert [{"000.src", "002.src"}, {"001.src", "002.src"}] == sorted(
-        (files(c) for c in found.ranked), key=sorted
-    )
-
-
-def test_a_line_of_another_shape_joins_when_the_same_edit_mends_it() -> None:
-    """A second index fails in assignments, conditions and waits; it is one cause all the same."""
-    pieces = ("X[1,2]=3", "A=X[I,J]", "IF X[1,2]==3 THEN\nENDIF", "WAIT FOR Y[1,J]")
-    (found,) = clusters_of(*pieces).ranked
-    assert 4 == len(found.files)
-
-
 def test_a_program_without_failures_is_in_no_cluster() -> None:
     """Nothing failed, nothing is grouped, and there is nothing to mend."""
     found = clusters_of("HALT", "A=1")
@@ -246,6 +223,3 @@ def test_copies_count() -> None:
     assert [3, 1] == [c.unlocks for c in clusters.ranked]
     assert [4, 5] == [parsed for _, parsed in clusters.order]
     assert [1, 1] == [len(c.files) for c in clusters.ranked]
-
-
-# --------------------------------------------------------------------------- the same result

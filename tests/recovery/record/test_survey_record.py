@@ -3,7 +3,6 @@
 import json
 from collections import Counter, defaultdict
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -287,25 +286,3 @@ def test_a_survey_without_failures_has_a_record() -> None:
         record["greedy"],
         record["failures"],
     )
-
-
-def test_a_survey_of_nothing_has_a_record() -> None:
-    """Where all was skipped there is a record that says so."""
-    found = survey_texts([], PRELIMINARY)
-    record = record_of(found, cluster(found), grammar_name="g")
-    assert (0, 0, 0, []) == (record["files"], record["parsed"], record["bytes"], record["clusters"])
-
-
-@pytest.mark.parametrize("line", ["A=" + "(" * 500, "A ? " * 500, "A=F(" + "1," * 500])
-def test_monstrous_lines_have_a_record(line: str) -> None:
-    """A line far beyond what people write is a failure of a cluster like any other."""
-    found = survey_texts([("a.src", f"DEF A()\n{line}\nEND\n")], PRELIMINARY)
-    record = record_of(found, cluster(found), grammar_name="g")
-    assert [2] == [failure["line"] for failure in record["failures"]]
-    assert 1 == len(record["clusters"])
-
-
-def test_the_same_survey_has_the_same_record(found: Survey, record: SurveyRecord) -> None:
-    """Only the time may differ."""
-    again = record_of(replace(found, seconds=0.0), cluster(found), grammar_name="grammar/some.g4")
-    assert {**record, "seconds": 0.0} == again

@@ -248,35 +248,6 @@ def test_results_kept_for_the_next_time_make_no_difference(many: Path, tmp_path:
     assert expected == record_of(surveyed(many, cache=tmp_path))
 
 
-def test_a_changed_file_is_read_again(tmp_path: Path) -> None:
-    """What is kept is kept by content: the same name with other bytes is another file."""
-    root = lay(tmp_path / "root", {"a.src": BAD})
-    assert [1] == [len(f.failures) for f in surveyed(root, cache=tmp_path / "kept").files]
-    lay(root, {"a.src": GOOD})
-    assert [0] == [len(f.failures) for f in surveyed(root, cache=tmp_path / "kept").files]
-
-
-def test_another_grammar_reads_again(tmp_path: Path) -> None:
-    """What was found under one grammar says nothing about another."""
-    root, kept = lay(tmp_path / "root", {"a.src": GOOD}), tmp_path / "kept"
-    text = PRELIMINARY.text.replace("HALT : 'HALT' ;", "HALT : 'HALTE' ;")
-    file = tmp_path / "other.g4"
-    file.write_text(text, encoding="utf-8")
-    assert () == only(surveyed(root, cache=kept)).failures
-    other = survey([root], read_file(file), jobs=1, cache=kept)
-    assert ["HALT"] == [f.source for f in only(other).failures]
-    assert () == only(surveyed(root, cache=kept)).failures
-
-
-def test_a_damaged_cache_is_never_trusted(tmp_path: Path) -> None:
-    """Whatever became of the kept results, the survey is right and there is no error."""
-    root, kept = lay(tmp_path / "root", {"a.src": GOOD, "b.src": BAD}), tmp_path / "kept"
-    expected = timeless(surveyed(root, cache=kept))
-    for file in [f for f in kept.rglob("*") if f.is_file()]:
-        file.write_bytes(b"no results at all" * 500)
-    assert expected == timeless(surveyed(root, cache=kept))
-
-
 # ----------------------------------------------------------------------------- exact places
 
 
@@ -291,30 +262,11 @@ def test_line_and_column_hold_for_every_line_end(tmp_path: Path, end: str, mark:
     assert text.split(end) == file.lines()
 
 
-def test_line_ends_may_be_mixed(tmp_path: Path) -> None:
-    """CRLF is one line end, LF CR are two, and the last line needs none."""
-    lay(tmp_path, {"a.src": b"DEF A()\r\nA=1\rB=2\n\rC 3\r\r\nEND\nDEF"})
-    assert [(5, 3, "3", "C 3"), (8, 4, "", "DEF")] == where(only(surveyed(tmp_path)))
-
-
-def test_the_first_line_of_a_marked_file_has_its_column(tmp_path: Path) -> None:
-    """Columns count characters from 1, behind a byte order mark too."""
-    lay(tmp_path, {"a.src": b"\xef\xbb\xbfDEF A(B)\nEND\n"})
-    assert [(1, 7, "B", "DEF A(B)")] == where(only(surveyed(tmp_path)))
-
-
 @pytest.mark.parametrize("encoding", ["utf-8", "cp1252", "utf-16", "utf-32"])
 def test_columns_count_characters_and_not_bytes(tmp_path: Path, encoding: str) -> None:
     """A letter that takes several bytes is one column in every encoding."""
     lay(tmp_path, {"a.src": 'DEF A()\nS="Größe" T\nEND\n'.encode(encoding)})
     assert [(2, 11, "T", 'S="Größe" T')] == where(only(surveyed(tmp_path)))
-
-
-def test_only_cr_and_lf_end_a_line(tmp_path: Path) -> None:
-    """Characters that other programs take for line ends do not shift the lines that follow."""
-    text = "DEF A()\n; \x0b \x0c \x85 \u2028 \u2029 rest\nC 3\nEND\n"
-    lay(tmp_path, {"a.src": text.encode()})
-    assert [(3, 3, "3", "C 3")] == where(only(surveyed(tmp_path)))
 
 
 def test_an_endless_line_is_cut_but_its_column_is_right(tmp_path: Path) -> None:

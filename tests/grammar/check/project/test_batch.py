@@ -137,16 +137,6 @@ def test_without_a_cache_nothing_is_computed_for_one(
     assert expected == codes(check(root, jobs=2))
 
 
-def test_a_declaration_that_changes_reaches_those_who_use_it(tmp_path: Path) -> None:
-    """A caller is checked again when the parameters of what it calls change, others are not."""
-    root = lay(tmp_path / "root", CALLER__src=CALLER, SHIFT__src=CALLED, A__src="DEF A()\nEND\n")
-    check(root, cache=tmp_path)
-    lay(root, SHIFT__src=CALLED.replace("N:IN", ""))
-    changed = check(root, cache=tmp_path)
-    assert ("CALLER.src", 2, "KRL301") in codes(changed)
-    assert 1 == changed.unchanged
-
-
 def test_a_second_declaration_reaches_those_who_use_the_name(tmp_path: Path) -> None:
     """A program is checked again if another list declares what it uses with another type, too."""
     text = "DEFDAT SHARED PUBLIC\nDECL GLOBAL INT COUNT=1\n{}ENDDAT\n"
@@ -154,18 +144,6 @@ def test_a_second_declaration_reaches_those_who_use_the_name(tmp_path: Path) -> 
     assert ("A.src", 2, "KSS1446") in codes(check(root, cache=tmp_path))
     lay(root, SHARED__dat=text.format("DECL GLOBAL BOOL COUNT=TRUE\n"))
     assert [("SHARED.dat", 3, "KRL104")] == codes(check(root, cache=tmp_path))
-
-
-def test_what_a_routine_does_reaches_callers_that_are_kept(tmp_path: Path) -> None:
-    """A call is judged by the statements of the routine, without checking its file again."""
-    caller = "DEF CALLER()\n$ANOUT[1] = SHARE(0)\nEND\n"
-    share = "DEFFCT REAL SHARE(N:IN)\nREAL N\nRETURN 1.0 {} N\nENDFCT\n"
-    root = lay(tmp_path / "root", CALLER__src=caller, SHARE__src=share.format("*"))
-    assert [] == codes(check(root, cache=tmp_path))
-    lay(root, SHARE__src=share.format("/"))
-    changed = check(root, cache=tmp_path)
-    assert [("CALLER.src", 2, "KRL416")] == codes(changed)
-    assert 1 == changed.unchanged
 
 
 @pytest.mark.parametrize(("seed", "jobs"), [(0, 1), (1, 1), (2, 1), (3, 2)])

@@ -8,7 +8,6 @@ from grammar.check.project.suppression_comments import (
     apply_suppressions,
     suppression,
     suppression_comments,
-    unsuppressed,
 )
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.syntax.source import Source
@@ -37,22 +36,11 @@ def test_a_comment_silences_its_file() -> None:
     assert [(2, "KRL404")] == kept(text, *found)
 
 
-def test_comments_that_say_nothing_are_reported() -> None:
-    """No code, or one that no code begins with, is a warning at the comment."""
-    assert [(1, "KRL901"), (2, "KRL901")] == kept("A ; krl: ignore\nB ; KRL: ignore[XYZ]\n")
-
-
 def test_comments_without_use_are_reported() -> None:
     """What silences nothing can go, unless it is for what was not looked for."""
     text = "A ; krl: ignore[KRL401]\nB ; krl: ignore[KRL601]\n"
     assert [(1, "KRL902"), (2, "KRL902")] == kept(text)
     assert [(1, "KRL902")] == kept(text, sought=("KSS", "KRL4"))
-
-
-def test_other_comments_are_left_alone() -> None:
-    """A file without such comments keeps all findings as they are."""
-    wrong = finding("label-twice", 1)
-    assert [(1, "KRL404")] == kept("A ; krl is a language: ignore it\n", wrong)
 
 
 @pytest.mark.parametrize(
@@ -100,16 +88,3 @@ def test_suppress_comments_that_say_nothing(comment: str, word: str) -> None:
 def test_other_comments_silence_nothing(comment: str) -> None:
     """Only a comment that begins so is meant."""
     assert suppression(comment, 1) is None
-
-
-def test_comments_silence_their_line_or_their_file() -> None:
-    """What silences nothing is told as well."""
-    two, three = finding("no-such-constant", 2), finding("no-such-constant", 3)
-    other = finding("rounded", 3)
-    line = Suppression(2, ("KSS",), False, "")
-    idle = Suppression(4, ("KSS",), False, "")
-    assert ([three, other], [idle]) == unsuppressed([two, three, other], [line, idle])
-    whole = Suppression(9, ("KSS2296",), True, "")
-    assert ([other], []) == unsuppressed([two, three, other], [whole])
-    both = unsuppressed([two], [line, whole])
-    assert ([], []) == both

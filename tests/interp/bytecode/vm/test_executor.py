@@ -7,24 +7,18 @@ from typing import Any
 
 import pytest
 
-from grammar.semantics.types import INT, Array
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
-from interp.port.events import ExecutorEvent
 from interp.port.requests import (
-    At,
     CodeHandle,
     Crash,
     End,
     Fail,
-    Invoke,
     Slice,
-    Write,
 )
 from interp.program.load import Limits
-from interp.values.faults import Fault, LinkError, RuntimeFailure
-from interp.values.values import ArrayValue
+from interp.values.faults import LinkError, RuntimeFailure
 
 Runner = Callable[..., list[Any]]
 Starter = Callable[..., Machine]
@@ -55,185 +49,6 @@ def routine(
         f'code {name} routine "main.src" 1\n{head}\n{variables}\nbegin\nLINE 2 {behind}\n{body}\n'
         "END:\n  RETURN\nend\n"
     )
-
-
-def shown(requests: list[Any]) -> list[Any]:
-    """The values that were written; the program must have ended well."""
-    assert isinstance(requests[-1], End), requests[-1]
-    return [request.value for request in requests if isinstance(request, Write)]
-
-
-def failed(requests: list[Any]) -> str:
-    """The slug of the fault that ended the program."""
-    assert isinstance(requests[-1], Fail), requests[-1]
-    assert isinstance(requests[-1].fault, Fault)
-    return requests[-1].fault.slug
-
-
-# ------------------------------------------------------------------------------- computing
-
-
-def test_counter_overflows(run: Runner) -> None:
-    """Beyond the largest INT a counter does not wrap [ARI-12]."""
-    body = "LINE 3 END\nFOR_DATA M.I I 1 END"
-    text = (
-        HEAD
-        + "data M.I INT = 2147483647\n"
-        + routine("PUSH_INT 0\nSTORE_LOCAL I\n" + body, "local I INT")
-    )
-    assert "overflow" == failed(run(text))
-
-
-# ------------------------------------------------------------------------------- references
-
-
-def test_rows_are_views(run: Runner) -> None:
-    """A row of an array shares its cells [TYP-11]."""
-    body = """
-  REF_LOCAL A INT[2,3]
-  PUSH_INT 2
-  ROW INT[2,3] 1
-  CALL SET
-  REF_LOCAL A INT[2,3]
-  PUSH_INT 2
-  ROW INT[2,3] 1
-  ASK SHOW_ROW
-  LOAD_LOCAL A[2,3]
-  ASK SHOW
-"""
-    text = HEAD + routine(body, "local A INT[2,3]")
-    text += routine("PUSH_INT 3\nINDEX_VIEW R\nPUSH_INT 8\nSTORE", name="SET", head="view R INT[]")
-    row, last = shown(run(text))
-    assert (ArrayValue(Array(INT, (3,)), [None, None, 8]), 8) == (row, last)
-
-
-def test_rows_of_parameters(run: Runner) -> None:
-    """A row can be taken of a parameter as of an array."""
-    body = "REF_DATA M.A INT[2,2,2]\nVIEW INT[2,2,2]\nCALL SUB"
-    text = HEAD + "data M.A INT[2,2,2] = 1 2 3 4 5 6 7 8\n" + routine(body)
-    text += routine(
-        "PUSH_INT 2\nPUSH_INT 1\nROW_VIEW A 2\nASK SHOW_ROW", name="SUB", head="view A INT[,,]"
-    )
-    assert [[5, 6]] == [list(row) for row in shown(run(text))]
-
-
-_PASSED = """
-  CALL SUB
-  PUSH_INT 1
-  ASK SHOW
-"""
-_INNER = routine("PASS_VIEW A\nCALL LAST", name="SUB", head="view A INT[,]")
-
-
-def test_view_left_out_can_be_passed_on(run: Runner) -> None:
-    """Only where it is used it is missed [SCO-13]."""
-    text = HEAD + routine(f"PUSH_NO_VIEW INT 2{_PASSED}") + _INNER
-    assert [1] == shown(run(text + routine("", name="LAST", head="view A INT[,]")))
-    for body in ("PUSH_INT 1\nPUSH_INT 1\nINDEX_VIEW A\nLOAD\nDROP", "LOAD_VIEW A\nCALL LAST"):
-        assert "uninitialised" == failed(
-            run(text + routine(body, name="LAST", head="view A INT[,]"))
-        )
-
-
-def test_copy_of_a_view(run: Runner) -> None:
-    """A copy has the sizes of what it is of, and cells of its own; without room it faults."""
-    body = """
-  REF_DATA M.A INT[2,2]
-  VIEW INT[2,2]
-  COPY_VIEW ROOM INT[{0},1]
-  CALL SUB
-  LOAD_DATA M.A[2,1]
-  ASK SHOW
-"""
-    text = HEAD + "data M.A INT[2,2] = 1 2 3 4\n" + routine(body, "local ROOM INT[{0},1]")
-    text += routine(
-        "PUSH_INT 2\nPUSH_INT 1\nINDEX_VIEW V\nPUSH_INT 9\nSTORE\n"
-        "PUSH_INT 2\nROW_VIEW V 1\nASK SHOW_ROW",
-        name="SUB",
-        head="view V INT[,]",
-    )
-    row, kept = shown(run(text.format(4)))
-    assert (ArrayValue(Array(INT, (2,)), [9, 4]), 3) == (row, kept)
-    assert "stack" == failed(run(text.format(3)))
-
-
-@pytest.mark.parametrize(
-    ("target", "source", "expected"),
-    [("A", "B", [5, 6]), ("B", "A", [1, 2, 3]), ("C", "A", [1, 2, 3, None])],
-)
-def test_arrays_are_filled(run: Runner, target: str, source: str, expected: list[Any]) -> None:
-    """An array of one dimension takes what it can hold; the rest has no value."""
-    sizes = {"A": 3, "B": 2, "C": 4}
-    expected = (expected + [None] * 4)[: sizes[target]]
-    text = HEAD + "data M.A INT[3] = 1 2 3\ndata M.B INT[2] = 5 6\ndata M.C INT[4] = 9 9 9 9\n"
-    text += routine(
-        f"""
-  REF_DATA M.{target} INT[{sizes[target]}]
-  VIEW INT[{sizes[target]}]
-  REF_DATA M.{source} INT[{sizes[source]}]
-  VIEW INT[{sizes[source]}]
-  FILL_ARRAY INT 1
-  REF_DATA M.{target} INT[{sizes[target]}]
-  VIEW INT[{sizes[target]}]
-  ASK SHOW_ROW
-"""
-    )
-    assert [expected] == [list(row) for row in shown(run(text))]
-
-
-def test_arrays_of_more_dimensions_need_equal_sizes(run: Runner) -> None:
-    """Sizes of parameters are only known while the program runs."""
-    text = (
-        HEAD
-        + "data M.A INT[2,3] = 1 2 3 4 5 6\ndata M.B INT[{0},3]\n"
-        + routine(
-            """
-  REF_DATA M.B INT[{0},3]
-  VIEW INT[{0},3]
-  REF_DATA M.A INT[2,3]
-  VIEW INT[2,3]
-  FILL_ARRAY INT 2
-  LOAD_DATA M.B[2,3]
-  ASK SHOW
-"""
-        )
-    )
-    assert [6] == shown(run(text.format(2)))
-    assert "inadmissible" == failed(run(text.format(3)))
-
-
-# ------------------------------------------------------------------------------- requests
-
-
-def test_arguments_come_back(run: Runner) -> None:
-    """An argument :OUT of a routine of the controller has the value that it has after the call."""
-    body = (
-        "PUSH_INT 1\nSTORE_LOCAL X\nPUSH_INT 5\nREF_LOCAL X INT\nASK RAISE\nLOAD_LOCAL X\nASK SHOW"
-    )
-    requests = run(HEAD + routine(body, "local X INT"), (None, {1: 9}))
-    assert Invoke(At("main.src", 2, 0), "ERR_RAISE", (5, 1), (None, None)) == requests[0]
-    assert [9] == shown(requests)
-
-
-def test_changed_system_variables_are_written(run: Runner) -> None:
-    """An argument :OUT that is a copy of a system variable is written back if it has changed."""
-    text = HEAD + 'ask CLEAR Invoke "ERR_CLEAR" (ref:INT=("$ERRORS" in:INT "N") ref:INT=)\n'
-    text += routine(
-        "PUSH_INT 1\nSTORE_LOCAL X\nPUSH_INT 3\nREF_LOCAL X INT\nREF_LOCAL Y INT\n"
-        "ASK CLEAR\nLOAD_LOCAL Y\nASK SHOW",
-        "local X INT\nlocal Y INT",
-    )
-    requests = run(text, (None, {0: 5.6, 1: 7}))
-    assert (1, None) == requests[0].arguments
-    assert Write(At("main.src", 2, 0), ("$ERRORS", 3, "N"), 6) == requests[1]
-    assert [6, 7] == shown(requests)
-    assert [7] == shown(run(text, (None, {1: 7})))
-
-
-def test_statements_may_go_on_at_other_lines(run: Runner) -> None:
-    """A request names the line that its part of the statement stands in."""
-    body = "PUSH_INT 1\nASK SHOW\nAT 5 END\nPUSH_INT 2\nASK SHOW"
-    assert [2, 5, 5] == [one.at.line for one in run(HEAD + routine(body), per_slice=1)]
 
 
 # ------------------------------------------------------------------------------- limits
@@ -314,10 +129,6 @@ end
 )
 
 
-def at(line: int, depth: int) -> At:
-    return At("main.src", line, depth)
-
-
 CALLING = INTERRUPTED.replace(
     "  LOAD\n  EQ_INT\n  RETURN_VALUE", "  LOAD\n  EQ_INT\n  DROP\n  CALL {0}\n  RETURN_VALUE"
 )
@@ -369,57 +180,6 @@ def test_what_was_not_handed_over_is_refused(start: Starter) -> None:
 
 
 # ------------------------------------------------------------------------------- the trace
-
-
-def test_trace_has_what_happens_in_order(start: Starter, recorder: Any) -> None:
-    """Statements, calls, assignments by their paths, ways taken, returns."""
-    text = (
-        HEAD
-        + "data M.P POINT[2]\n"
-        + routine(
-            """
-  REF_DATA M.P POINT[2]
-  PUSH_INT 2
-  INDEX POINT[2]
-  MEMBER 1 REAL
-  PUSH_REAL 1.5
-  STORE
-  TELL REAL 0
-  PUSH_BOOL TRUE
-  JUMP_UNLESS END
-  TELL_BRANCH 1
-  REF_LOCAL A INT[3]
-  VIEW INT[3]
-  CALL SUB
-  PUSH_INT 3
-  STORE_LOCAL A[1]
-  TELL_LOCAL A[1] INT
-""",
-            "local A INT[3]",
-        )
-    )
-    text += routine(
-        "PUSH_INT 2\nINDEX_VIEW V\nPUSH_INT 7\nSTORE\nTELL_REF V INT 0\n"
-        "LOAD_VIEW V\nLOAD_VIEW V\nFILL_ARRAY INT 1\nTELL_REF V INT 1",
-        name="SUB",
-        head="view V INT[]",
-    )
-    machine = start(text, sink=recorder)
-    assert isinstance(machine.advance(), End)
-    whole = ArrayValue(Array(INT, (3,)), [None, 7, None])
-    main, sub = at(2, 0), at(2, 1)
-    assert [
-        ExecutorEvent("line", main),
-        ExecutorEvent("assign", main, path=("P", 2, "Y"), value=1.5),
-        ExecutorEvent("branch", main, way=1),
-        ExecutorEvent("call", main, "SUB"),
-        ExecutorEvent("line", sub),
-        ExecutorEvent("assign", sub, path=("V", 2), value=7),
-        ExecutorEvent("assign", sub, path=("V",), value=whole),
-        ExecutorEvent("return", sub, "SUB"),
-        ExecutorEvent("assign", main, path=("A", 1), value=3),
-        ExecutorEvent("return", main, "MAIN"),
-    ] == recorder.events
 
 
 def test_trace_changes_nothing(run: Runner, everything: str, recorder: Any) -> None:

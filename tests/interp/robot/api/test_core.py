@@ -145,17 +145,6 @@ def test_causes_come_before_the_next_event_of_the_path(
     ] == [(command, what) for _, command, what in brief(core.run_until(1_500_000))]
 
 
-def test_a_place_behind_the_end(core: ControlCore, outputs: Outputs, make_motion: Make) -> None:
-    """A place may lie in the blend behind its motion, which has ended by then."""
-    place = Place(1, "DISTANCE", 1.0, delay=30_000)
-    first, second, gas = make_motion(1, 1_000_000, place), make_motion(2), output()
-    core.load(0, Transaction(first, second, gas).link(first.reached(place), "start", gas))
-    core.run_until(1_010_000)
-    assert (CommandState.ENDED, CommandState.LINKED) == (first.state, gas.state)
-    core.run_until(1_030_000)
-    assert [(1_030_000, ("$OUT", 1), True)] == outputs
-
-
 def test_a_place_behind_the_end_outlasts_an_interruption(
     core: ControlCore, paced: Any, outputs: Outputs, make_motion: Make
 ) -> None:
@@ -195,40 +184,6 @@ def test_cancelling_a_motion_brakes(core: ControlCore, paced: Any, make_motion: 
     assert (CommandState.CANCELLED, CommandState.CANCELLED) == (first.state, second.state)
     assert (CommandState.CANCELLED, CommandState.ENDED) == (gas.state, alarm.state)
     assert core.next_time() is None
-
-
-def test_stopping_a_motion_that_has_not_begun(
-    core: ControlCore, paced: Any, make_motion: Make
-) -> None:
-    """Nothing moves yet, so nothing has to brake."""
-    motion, at_once = make_motion(1), WaitCommand(0)
-    core.load(0, Transaction(motion, at_once).link(at_once.ended, "stop", motion))
-    assert CommandState.CANCELLED is motion.state
-    assert ["stop at 0", "discard at 0"] == paced.calls
-    assert (0, "motion 1 (LIN)", "cancelled") == brief(core.run_until(0))[-1]
-
-
-def test_the_owner_stops_a_motion(core: ControlCore, paced: Any, make_motion: Make) -> None:
-    """What a link can do, the owner can do at any time."""
-    motion = make_motion(1)
-    core.load(0, Transaction(motion))
-    core.apply(200_000, "stop", motion)
-    assert CommandState.ACTIVE is motion.state
-    assert (210_000, "motion 1 (LIN)", "cancelled") == brief(core.run_until(900_000))[-1]
-    assert ["stop at 200000", "discard at 210000"] == paced.calls
-
-
-def test_cancelling_what_is_no_motion(core: ControlCore) -> None:
-    """A wait that is cancelled does not end, and what it would have started never starts."""
-    long, short, gas = WaitCommand(100), WaitCommand(40), output()
-    core.load(
-        0,
-        Transaction(long, short, gas)
-        .link(short.ended, "cancel", long)
-        .link(long.ended, "start", gas),
-    )
-    assert (40, "output $OUT.1", "cancelled") == brief(core.run_until(1_000))[-1]
-    assert [CommandState.CANCELLED] * 2 == [long.state, gas.state]
 
 
 def test_brake_and_proceed(core: ControlCore, paced: Any, make_motion: Make) -> None:
@@ -343,13 +298,6 @@ def nonsense(make: Make) -> dict[str, tuple[Transaction, str]]:
             "waits for it",
         ),
     }
-
-
-def test_messages_that_stop_nothing(core: ControlCore, make_motion: Make) -> None:
-    """What planning has to say of a motion is kept with its command."""
-    still, moving = make_motion(1, 0), make_motion(2)
-    core.load(0, Transaction(still, moving))
-    assert ((3171,), ()) == (still.notices, moving.notices)
 
 
 @pytest.mark.parametrize("name", ["twice", "number", "stranger", "foreign", "circle"])

@@ -219,24 +219,6 @@ def test_shapes_are_kept(arm: Kinematics) -> None:
     assert (0, 8, 6) == arm.inverse(np.empty((0, 4, 4))).shape
 
 
-@pytest.mark.parametrize(
-    ("axes", "status"),
-    [
-        ((0, -90, 90, 0, 10, 0), 2),
-        ((0, -90, 90, 0, -10, 0), 6),
-        ((0, -90, 90, 0, 0, 0), 2),
-        ((0, -60, -20, 0, 10, 0), 0),
-        ((0, -160, 60, 0, 10, 0), 3),
-        ((0, -160, -20, 0, -10, 0), 5),
-        ((0, -90, 4.77, 0, 10, 0), 2),
-        ((0, -90, 4.75, 0, 10, 0), 0),
-    ],
-)
-def test_status(arm: Kinematics, axes: tuple[float, ...], status: int) -> None:
-    """Overhead area, elbow beyond stretched, and A5 negative make the bits [POS-03 to POS-05]."""
-    assert status == int(arm.status(axes))
-
-
 def test_status_of_an_elbow_without_offset(make_arm: MakeArm) -> None:
     """Where A3 and A4 intersect, bit 1 is set from A3 = 0 on [POS-04]."""
     arm = make_arm(*OTHERS["intersecting"])

@@ -8,10 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from interp.port.requests import SplineRange
-from interp.robot.arm import Approximation, Place, SplinePart
-from interp.robot.path.pose_path import Arc, StraightLine
-from interp.robot.path.spline import FreeSegment
+from interp.robot.arm import SplinePart
 from interp.values.faults import Fault
 
 if TYPE_CHECKING:
@@ -60,13 +57,6 @@ def test_through_all_points(driver: Driver) -> None:
         assert [part.target[name] for name in "XYZ"] == pytest.approx(place)
     (end,) = sections[-1].curve.axes(np.ones(1))
     assert np.allclose(driver.samples().axes[-1], end)
-
-
-def test_lines_and_arcs_are_exact(driver: Driver) -> None:
-    """SLIN is a straight line and SCIRC an arc, whatever lies beside them."""
-    sections = run(driver, MIXED)
-    kinds = [type(section.curve.pose_path) for section in sections]
-    assert kinds == [FreeSegment, FreeSegment, StraightLine, FreeSegment, Arc, FreeSegment]
 
 
 def test_tangent_and_curvature_go_on(driver: Driver) -> None:
@@ -125,76 +115,3 @@ def test_swinging_beyond_a_software_limit(driver: Driver, kind: str) -> None:
     with pytest.raises(Fault, match=r"software limit switch: E1 at 2\d\d\d") as caught:
         run(driver, parts, kind=kind)
     assert 1211 == caught.value.number
-
-
-def test_blending_into_and_out_of_a_block(driver: Driver) -> None:
-    """A block is blended like any other motion, with its first and its last segment."""
-    near = {"criteria": ("C_DIS",), "approximation": Approximation(cdis=15.0), "velocity": 0.3}
-    driver.move("PTP", {**START, "Y": -250.0})
-    driver.play()
-    driver.move("LIN", START, **near)
-    driver.move("SPLINE", parts=MIXED[:3], **near)
-    driver.move("LIN", at(480, 150, 550))
-    driver.play()
-    assert 2 == sum(event.kind == "blend_apex" for event in driver.events)
-    driver.check_limits()
-
-
-def test_stopping_at_a_place(driver: Driver) -> None:
-    """The last chance for STOP WHEN PATH comes when a brake still ends just there [SPL-06]."""
-    driver.move("PTP", START)
-    driver.play()
-    stop = (Place(1, "PATH", -10.0),)
-    parts = (SplinePart("SPL", at(450, 0), stop_places=stop), SplinePart("SPL", at(450, 100)))
-    driver.move("SPLINE", parts=parts, velocity=0.3)
-    while driver.now == 0 or driver.events[-1].kind != "place":
-        event = driver.arm.take()
-        driver.events.append(event)
-        driver.now = event.time
-    driver.arm.brake(driver.now, False)
-    driver.play()
-    assert -10.0 == pytest.approx(driver.tool(driver.now)[1], abs=2e-3)
-
-
-# ------------------------------------------------------------------------------------------- ranges
-
-
-def line(*ranges: tuple[int, SplineRange], ends: tuple[float, ...] = (-50, 0, 100, 150)) -> Any:
-    """A straight block, with ranges before segments, or behind the last."""
-    parts = [
-        SplinePart("SLIN", at(450, end), ranges=tuple(r for place, r in ranges if place == number))
-        for number, end in enumerate(ends)
-    ]
-    behind = tuple(r for place, r in ranges if place == len(ends))
-    return {"parts": tuple(parts), "ranges": behind}
-
-
-@pytest.mark.parametrize(
-    ("parts", "values", "number"),
-    [
-        (line((0, SplineRange("CONST_VEL", "START", 0.0, True))), {"velocity": 0.2}, 3216),
-        (line((1, SplineRange("CONST_VEL", "START", 0.0, True))), {"velocity": 0.2}, 3217),
-        (
-            line((1, SplineRange("CONST_VEL", "START", 0.0, True))),
-            {"velocity": 0.4, "acceleration": 0.5},
-            3216,
-        ),
-        (
-            line(
-                (1, SplineRange("CONST_VEL", "START", 0.0, True)),
-                (2, SplineRange("CONST_VEL", "END", 0.0, False)),
-                ends=(-50, 100, 0),
-            ),
-            {"velocity": 0.1},
-            3215,
-        ),
-    ],
-)
-def test_speeds_that_cannot_be_kept(
-    driver: Driver, parts: dict[str, Any], values: dict[str, Any], number: int
-) -> None:
-    """Each reason why a speed cannot be constant has its message [SPL-05]."""
-    driver.move("PTP", START)
-    with pytest.raises(Fault) as caught:
-        driver.move("SPLINE", speed_type="#VAR_ALL", **values, **parts)
-    assert number == caught.value.number

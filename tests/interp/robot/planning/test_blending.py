@@ -12,7 +12,6 @@ import pytest
 
 from interp.port.requests import At
 from interp.robot.arm import Approximation, Motion, Settings
-from interp.robot.kinematics.placement import Placement
 from interp.robot.path.axis_path import BlendedAxes, JointCurve
 from interp.robot.path.pose_path import Blend
 from interp.robot.path.programmed_targets import Programmed
@@ -20,7 +19,6 @@ from interp.robot.planning.blend_zones import Zone
 from interp.robot.planning.blending import blend_of
 from interp.robot.planning.tracks import Tracks
 from interp.values.faults import Fault
-from interp.values.poses import Pose
 from tests.interp.robot.conftest import Driver
 
 if TYPE_CHECKING:
@@ -72,59 +70,6 @@ def test_a_blend_of_lines_is_nearly_a_parabola(driver: Driver) -> None:
     least, most = np.minimum(across, along), np.maximum(across, along)
     assert 0.12 > np.abs((np.sqrt(40.0) - np.sqrt(most)) ** 2 - least).max()
     driver.check_limits()
-
-
-@pytest.mark.parametrize(("velocity", "away"), [(0.2, 10.0), (2.0, 7.5)])
-def test_the_point_is_not_passed(driver: Driver, velocity: float, away: float) -> None:
-    """The apex is a quarter of the zone away, nearer where that is sooner over [BLD-08]."""
-    corner(driver, ("C_DIS",), velocity, cdis=40.0)
-    driver.play()
-    assert (500.0 - away, -100.0 + away, 600.0) == pytest.approx(
-        driver.tool(driver.time("blend_apex", 2)), abs=0.15
-    )
-
-
-def test_events_of_a_blend(driver: Driver) -> None:
-    """The first motion ends and the second begins at the apex, between start and end."""
-    corner(driver, ("C_DIS",), cdis=40.0)
-    driver.play()
-    kinds = [(event.kind, event.motion) for event in driver.events if event.motion > 1]
-    assert kinds == [
-        ("motion_start", 2),
-        ("blend_start", 2),
-        ("blend_apex", 2),
-        ("motion_end", 2),
-        ("motion_start", 3),
-        ("blend_end", 3),
-        ("motion_end", 3),
-    ]
-    times = [event.time for event in driver.events]
-    assert times == sorted(times)
-    assert driver.time("blend_apex", 2) == driver.time("motion_start", 3)
-    assert not any(event.is_exact_unwanted for event in driver.events)
-
-
-@pytest.mark.parametrize(
-    ("criterion", "values", "before"),
-    [
-        ("C_DIS", {"cdis": 30.0}, 30.0),
-        ("C_ORI", {"cori": 5.0}, 75.0),
-        ("C_VEL", {"cvel": 100.0}, 40.0),
-        ("C_VEL", {"cvel": 50.0}, 15.0),
-    ],
-)
-def test_where_a_blend_begins(
-    driver: Driver, criterion: str, values: dict[str, Any], before: float
-) -> None:
-    """By distance, by the angle that is left, by the speed that braking has left [BLD-13]."""
-    driver.move("PTP", FIRST)
-    driver.play()
-    target = {**CORNER, "B": 140.0}
-    settings: dict[str, Any] = {"approximation": Approximation(**values)}
-    driver.move("LIN", target, criteria=(criterion,), velocity=0.25, acceleration=1.0, **settings)
-    driver.move("LIN", {**target, "X": 300.0, "B": 160.0}, velocity=0.25, acceleration=1.0)
-    start, point, _ = corners(blend(driver))
-    assert before == pytest.approx(float(np.linalg.norm(point - start)), rel=0.35)
 
 
 def test_ptp_blends_in_the_space_of_axes(driver: Driver) -> None:
@@ -183,19 +128,6 @@ def test_mixed_blends(driver: Driver, kinds: tuple[str, str]) -> None:
     driver.check_limits()
 
 
-def test_other_frames_blend_in_the_space_of_axes(driver: Driver) -> None:
-    """Where $BASE changes at the point there is no common path, and the axes blend."""
-    driver.move("PTP", FIRST)
-    driver.play()
-    values = {"approximation": Approximation(cdis=30.0)}
-    driver.move("LIN", CORNER, criteria=("C_DIS",), **values)
-    driver.move("LIN", {**LAST, "X": 390.0}, placement=Placement(base=Pose.of(10.0)), **values)
-    assert isinstance(blend(driver).curve, JointCurve)
-    driver.play()
-    assert (400.0, -100.0, 600.0) == pytest.approx(driver.tool(driver.now))
-    driver.check_limits()
-
-
 @pytest.mark.parametrize("others", [{"circle": "#BASE"}, {"circle": "#PATH"}])
 def test_line_into_circle(driver: Driver, others: dict[str, str]) -> None:
     """The blend leaves the line and joins the circle where the zone ends, in their directions."""
@@ -237,70 +169,6 @@ def test_c_vel_where_the_hand_turns_on_a_line(driver: Driver, way: tuple[int, in
         driver.move("LIN", target, criteria=criteria, velocity=0.3, approximation=near)
     driver.play()
     assert isinstance(blend(driver).curve.pose_path, Blend)
-
-
-def test_points_on_a_line_cost_nothing(driver: Driver) -> None:
-    """Points on one line, 0.01 mm from one another too, are passed as if they were not there."""
-    durations = []
-    for places in ((), (50.0, 49.99, 20.0)):
-        driver.move("PTP", FIRST)
-        driver.play()
-        begin = driver.now
-        near = Approximation(cdis=40.0)
-        for place in places:
-            driver.move("LIN", {**FIRST, "Y": place}, criteria=("C_DIS",), approximation=near)
-        driver.move("LIN", CORNER)
-        driver.play()
-        durations.append(driver.now - begin)
-    assert durations[0] == pytest.approx(durations[1], rel=1e-3)
-
-
-def test_a_motion_that_comes_too_late(driver: Driver) -> None:
-    """Appended when the zone has begun, a motion finds an exact stop, which is told [BLD-10]."""
-    driver.move("PTP", FIRST)
-    driver.play()
-    begin = driver.now
-    driver.move("LIN", CORNER, criteria=("C_DIS",), approximation=Approximation(cdis=40.0))
-    driver.play(until=begin + 100_000)
-    ahead = driver.arm.mark()
-    driver.move("LIN", LAST)
-    assert blend(driver).following == 3
-    driver.arm.rewind(ahead)
-    driver.play(until=begin + 600_000)
-    driver.move("LIN", LAST)
-    driver.play()
-    assert [True] == [
-        e.is_exact_unwanted for e in driver.events if e.kind == "motion_end" and e.motion == 2
-    ]
-    assert tuple(CORNER[name] for name in "XYZ") == pytest.approx(
-        driver.tool(driver.time("motion_end", 2))
-    )
-    driver.check_limits()
-
-
-def test_appended_on_the_way(driver: Driver) -> None:
-    """A motion appended on the way is blended into, without a jump of speed or acceleration."""
-    driver.move("PTP", FIRST)
-    driver.play()
-    begin = driver.now
-    driver.move("LIN", CORNER, criteria=("C_DIS",), approximation=Approximation(cdis=40.0))
-    driver.play(until=begin + 270_000)
-    driver.move("LIN", LAST)
-    driver.play()
-    assert driver.time("blend_apex", 2) < driver.time("blend_end", 3)
-    driver.check_limits()
-
-
-def test_blends_that_use_up_a_motion(driver: Driver) -> None:
-    """Two blends that each take half of a motion follow one another."""
-    values = {"approximation": Approximation(cdis=500.0), "criteria": ("C_DIS",)}
-    driver.move("PTP", FIRST)
-    driver.play()
-    for target in (CORNER, LAST, FIRST):
-        driver.move("LIN", target, **values)
-    driver.play()
-    assert driver.time("blend_end", 3) == driver.time("blend_start", 3)
-    driver.check_limits()
 
 
 def test_a_blend_of_axes_keeps_within_software_limits(driver: Driver) -> None:

@@ -12,7 +12,6 @@ from interp.robot.api.motions import MotionFactory
 from interp.robot.arm import Samples, Settings
 from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.machine_reader import read_machine
-from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solution_choice import follow, solve
 from interp.robot.models import default_machine
 from interp.robot.simulation.cell import Cell
@@ -133,34 +132,6 @@ def test_a_jump_is_a_fault() -> None:
     with pytest.raises(RobotFault, match="does not follow") as caught:
         robot.follow(samples_of(axes))
     assert "tracking" == caught.value.slug
-
-
-def test_a_planned_line_at_a_metre_a_second() -> None:
-    """From the plan to the record: LIN at $VEL.CP 1 m/s is measured within 0.05 mm of its plan."""
-    machine = default_machine()
-    tool = Placement(base=Pose.of(x=450.0, z=400.0), tool=Pose.of(z=100.0))
-    motions = MotionFactory(Settings(placement=tool, velocity=1.0, acceleration=8.0))
-    home = (0.0, -90.0, 90.0, 0.0, 45.0, 0.0)
-    arm = PlannedArm(machine, home)
-    core = ControlCore(arm, lambda *_: None, 12_000)
-    tracking = Tracking(arm, MujocoRobot(Cell(machine)), machine, 12_000, home)
-    core.load(
-        0,
-        Transaction(motions.ptp(x=0, y=-280, z=0, a=0, b=0, c=180, s=2, t=2), motions.lin(y=280)),
-    )
-    tracking.placed(0, tool)
-    while (time := core.next_time()) is not None:
-        core.run_until(time)
-        tracking.advance(time)
-    tracking.settle(core.now)
-    record = tracking.record()
-    assert record.points_measured is not None
-    steps = np.linalg.norm(np.diff(record.points[:, :3], axis=0), axis=1) / 12.0
-    is_line = np.abs(record.points[:, 0]) + np.abs(record.points[:, 2]) < 1e-6
-    assert is_line.sum() > 40
-    assert 1.0 == pytest.approx(steps[is_line[1:]].max(), abs=1e-3)
-    off = np.linalg.norm((record.points - record.points_measured)[:, :3], axis=1)
-    assert 1e-4 < off[is_line].max() < 0.05
 
 
 def test_any_path_up_to_a_metre_a_second() -> None:
