@@ -11,11 +11,11 @@ from dataclasses import asdict, dataclass, field, replace
 from random import Random
 from typing import Any
 
-from grammar.notation.edits import AddAlternative, AddToken, Edit, apply
+from grammar.notation.edits import Edit, apply
 from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.rebase import rebased
 from grammar.notation.wellformed import problem
-from recovery.induction.steps import AcceptedStep, RefusedStep, Round, described
+from recovery.induction.steps import AcceptedStep, RefusedStep, Round, described, new_in
 from recovery.ledger.construct import Construct, LedgerError
 from recovery.ledger.construct_file import name_from
 from recovery.ledger.ledger import in_force
@@ -61,11 +61,7 @@ class InducedLedger:
         return added
 
     def _construct(self, step: AcceptedStep) -> Construct:
-        edits = []
-        for edit in step.edits:
-            if not (isinstance(edit, AddToken | AddAlternative) and _is_there(self.grammar, edit)):
-                self.grammar = apply(self.grammar, [edit])
-                edits.append(edit)
+        self.grammar, edits = new_in(self.grammar, step.edits)
         construct = Construct(
             name_from(step.title),
             step.title,
@@ -137,13 +133,6 @@ def without_some(
     ids = sorted(construct.id for construct in constructs)
     left, gone = without(start, constructs, Random(seed).sample(ids, count))
     return in_force(start, left), gone
-
-
-def _is_there(grammar: Grammar, edit: AddToken | AddAlternative) -> bool:
-    if isinstance(edit, AddToken):
-        return edit.name in grammar.by_name
-    rule = grammar.by_name[edit.rule]
-    return edit.text in {rule.source_of(alternative) for alternative in rule.alternatives}
 
 
 def _short(grammar: Grammar, edits: Iterable[Edit]) -> list[str]:

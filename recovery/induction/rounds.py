@@ -55,7 +55,7 @@ from recovery.induction.steps import (
     RefusedStep,
     Round,
     described,
-    joined,
+    grown,
 )
 from recovery.induction.supported_forms import SupportedForms
 from recovery.ledger.construct import Evidence
@@ -175,7 +175,7 @@ class Induction:
             taken, refused = [], []  # so few files may be damaged
         else:
             taken, refused = self._inferred(review, finder, failures, least, inner=step == "inner")
-        grammar = apply(self.grammar, joined(taken))
+        grammar = grown(self.grammar, taken)
         if taken and grammar.sha256 in self._had:  # folds may undo each other
             refused += [RefusedStep(s.title, s.edits, 0.0, "has been so before") for s in taken]
             taken, grammar = [], self.grammar
@@ -533,7 +533,7 @@ def _narrower(review: EditReview, fold: InferredStep, had: Set[str]) -> Recogniz
     """
     grammar = review.recognizer.grammar
     try:
-        shorter = apply(grammar, fold.edits)
+        shorter = grown(grammar, [fold])
     except GrammarError as error:
         return str(error)
     if size(shorter) >= size(grammar) + fold.breadth:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from grammar.notation.edits import AddAlternative, AddToken, apply
+from grammar.notation.edits import AddAlternative, AddToken
 from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.wellformed import problem
 from grammar.parser.failures import Failure, FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.induction.language import CorpusFile
 from recovery.induction.names_rule import names_kept
-from recovery.induction.steps import AcceptedStep, Reading, RefusedStep, joined
+from recovery.induction.steps import AcceptedStep, Reading, RefusedStep, grown
 from recovery.tuning import GRAMMARS_KEPT
 
 #: The failures of each file, in its order.
@@ -51,7 +51,7 @@ class ShownFiles:
         the step than have these lines.
         """
         before = self.failures(grammar)[1]
-        after = self.failures(apply(grammar, joined(taken)))[1]
+        after = self.failures(grown(grammar, taken))[1]
         worse = {
             place: _first(before[place])
             for place, found in enumerate(after)
@@ -70,7 +70,7 @@ class ShownFiles:
                 if reason and version == step and not may_lose:
                     continue
                 try:
-                    wider = apply(grammar, joined([*kept, version]))
+                    wider = grown(grammar, [*kept, version])
                 except GrammarError as error:
                     reason = str(error)
                     break
@@ -96,7 +96,7 @@ class ShownFiles:
 
     def gains(self, grammar: Grammar, taken: Sequence[AcceptedStep]) -> bool:
         """Return whether the steps let more files parse, or as many with fewer failing lines."""
-        before, after = self.failures(grammar)[1], self.failures(apply(grammar, joined(taken)))[1]
+        before, after = self.failures(grammar)[1], self.failures(grown(grammar, taken))[1]
         return _standing(after) > _standing(before)
 
     def _is_outvoted(self, places: Sequence[int], step: AcceptedStep) -> bool:

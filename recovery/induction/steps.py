@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from grammar.notation.edits import AddAlternative, AddToken, Edit, describe, to_data
+from grammar.notation.edits import AddAlternative, AddToken, Edit, apply, describe, to_data
 from grammar.notation.model import Grammar, GrammarError
 from recovery.ledger.construct import Evidence
 
@@ -67,13 +67,35 @@ class Round:
     refused: tuple[RefusedStep, ...]
 
 
-def joined(steps: Sequence[AcceptedStep]) -> list[Edit]:
-    """Return the edits of all steps, without duplicates."""
-    found: list[Edit] = []
-    for edit in (edit for step in steps for edit in step.edits):
-        if not (isinstance(edit, AddToken | AddAlternative) and edit in found):
-            found.append(edit)
-    return found
+def grown(grammar: Grammar, steps: Iterable[InferredStep | AcceptedStep]) -> Grammar:
+    """Return the grammar after the edits of steps; raises `GrammarError` if one does not fit."""
+    for step in steps:
+        grammar, _ = new_in(grammar, step.edits)
+    return grammar
+
+
+def new_in(grammar: Grammar, edits: Iterable[Edit]) -> tuple[Grammar, list[Edit]]:
+    """Return the grammar after edits, and those among them that it needs.
+
+    Tokens and alternatives that are there already, also by an edit before, are not added again.
+    Raises `GrammarError` if an edit does not fit.
+    """
+    new = []
+    for edit in edits:
+        if not _is_there(grammar, edit):
+            grammar = apply(grammar, [edit])
+            new.append(edit)
+    return grammar, new
+
+
+def _is_there(grammar: Grammar, edit: Edit) -> bool:
+    match edit:
+        case AddToken(name=name):
+            return name in grammar.by_name
+        case AddAlternative(rule=name, text=text) if name in grammar.by_name:
+            rule = grammar.by_name[name]
+            return text in map(rule.source_of, rule.alternatives)
+    return False
 
 
 def described(grammar: Grammar, edits: Iterable[Edit]) -> tuple[str, ...]:

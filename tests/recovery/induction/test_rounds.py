@@ -545,6 +545,20 @@ def test_the_ledger_replays(growth: InducedLedger) -> None:
     assert growth.grammar.text == in_force(growth.start, growth.constructs).text
 
 
+def test_what_is_there_is_not_added_again(
+    toy: Grammar, toy_files: tuple[CorpusFile, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else the grammar has an alternative twice, and its ledger has it once."""
+    again = InferredStep("again", (AddAlternative("simpleStatement", "call"),), (), breadth=9)
+    monkeypatch.setattr(rounds, "folds_of", lambda _: iter([again]))
+    induction = Induction(toy, toy_files, (), NegativeSet(()))
+    ledger = InducedLedger(toy, toy)
+    for done in induction.rounds():
+        ledger.add(done)
+    assert ledger.grammar.text == induction.grammar.text
+    assert "again" not in {construct.title for construct in ledger.constructs}
+
+
 def test_no_line_is_lost(growth: InducedLedger) -> None:
     """From round to round no more lines fail."""
     failing = [done["shown"]["failing"] for done in growth.rounds]
