@@ -1,17 +1,22 @@
 """The Debug Adapter Protocol: capabilities, start and stepping.
 
 Other requests are answered in `krl.debug_adapter.inspection` and `krl.debug_adapter.breakpoints`.
+A request ``gotoTargets`` is answered by the method ``on_goto_targets`` of one of the three, which
+returns the body of the response. A function under the key ``then`` is removed from it, and called
+after the response was sent.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final, get_args, get_type_hints
 
-from interp.debugging.client import Back, Go, Select, StepCommand, Way
+from interp.controller.state.trace import TaskName
+from interp.debugging.client import Back, Command, Go, Select, StepCommand
 from interp.values.faults import RuntimeFailure
-from krl.debug_adapter.arguments import Arguments, Handler, Refused
+from krl.debug_adapter.arguments import Arguments, Refused
 from krl.debug_adapter.breakpoints import Breakpoints
 from krl.debug_adapter.connection import Connection, Json
 from krl.debug_adapter.debuggee import Debuggee
@@ -46,6 +51,19 @@ _OPTIONS: Final[Mapping[str, tuple[str, type[Any]]]] = {
 }
 
 
+#: The command that each request to go on gives to the debugger, from the task that it names.
+_GOING: Final[Mapping[str, Callable[[TaskName], Command]]] = {
+    "continue": lambda _task: Go(),
+    "reverseContinue": lambda _task: Back("go"),
+    "next": partial(StepCommand, "over"),
+    "stepIn": partial(StepCommand, "into"),
+    "stepOut": partial(StepCommand, "out"),
+    "stepMotion": partial(StepCommand, "motion"),
+    "stepBack": partial(Back, "over"),
+    "stepMotionBack": partial(Back, "motion"),
+}
+
+
 class Adapter:
     """Serves one client; options of the command line are defaults for its launch request."""
 
@@ -56,27 +74,7 @@ class Adapter:
         self._program = Debuggee(connection)
         self._breakpoints = Breakpoints(self._program)
         self._targets: list[tuple[int, str]] = []
-        self._handlers: Mapping[str, Handler] = {
-            "initialize": self._initialize,
-            "launch": self._launch,
-            "configurationDone": self._configuration_done,
-            "restart": self._restart,
-            "terminate": self._terminate,
-            "disconnect": lambda _arguments: {},
-            "continue": lambda _arguments: self._program.go(Go()),
-            "reverseContinue": lambda _arguments: self._program.go(Back("go")),
-            "next": self._stepping("over"),
-            "stepIn": self._stepping("into"),
-            "stepOut": self._stepping("out"),
-            "stepMotion": self._stepping("motion"),
-            "stepBack": self._stepping_back("over"),
-            "stepMotionBack": self._stepping_back("motion"),
-            "pause": self._pause,
-            "gotoTargets": self._goto_targets,
-            "goto": self._goto,
-            **self._breakpoints.requests,
-            **Inspection(self._program).requests,
-        }
+        self._parts = (self, self._breakpoints, Inspection(self._program))
 
     def serve(self) -> None:
         """Answer requests until the client disconnects."""
@@ -91,12 +89,17 @@ class Adapter:
             self._program.leave()
 
     def _answer(self, request: Json) -> None:
-        handle = self._handlers.get(request["command"])
-        arguments = request.get("arguments")
+        name, given = request["command"], request.get("arguments")
+        arguments = Arguments(given if isinstance(given, dict) else {})
+        method = "on_" + re.sub("[A-Z]", lambda found: f"_{found[0].lower()}", name)
+        answers = (getattr(part, method, None) for part in self._parts)
         try:
-            if handle is None:
-                raise Refused(f"{request['command']} is not supported")
-            body = handle(Arguments(arguments if isinstance(arguments, dict) else {}))
+            if name in _GOING:
+                body = self._program.go(_GOING[name](self._program.task(arguments)))
+            elif answer := next(filter(None, answers), None):
+                body = answer(arguments)
+            else:
+                raise Refused(f"{name} is not supported")
         except (Refused, RuntimeFailure, InputError, IndexError) as error:
             self._connection.respond(request, None, one_line(str(error)))
             return
@@ -107,12 +110,12 @@ class Adapter:
 
     # ------------------------------------------------------------------------------- the session
 
-    def _initialize(self, arguments: Arguments) -> Json:
+    def on_initialize(self, arguments: Arguments) -> Json:
         """Return the capabilities of this adapter."""
         self._program.first_line = int(arguments.get("linesStartAt1", bool, True))
         return dict(_CAPABILITIES)
 
-    def _launch(self, arguments: Arguments) -> Json:
+    def on_launch(self, arguments: Arguments) -> Json:
         """Load the program; it starts with configurationDone."""
         if self._program.has_begun:
             raise Refused("a program has been launched already")
@@ -127,35 +130,33 @@ class Adapter:
         self._program.load(self._file, self._options)
         return {"then": lambda: self._connection.event("initialized")}
 
-    def _configuration_done(self, _arguments: Arguments) -> Json:
+    def on_configuration_done(self, _arguments: Arguments) -> Json:
         """Start the program."""
         if not self._program.is_loaded or self._program.has_begun:
             raise Refused("there is no program to begin")
         return {"then": lambda: self._program.begin(self._breakpoints.install)}
 
-    def _restart(self, _arguments: Arguments) -> Json:
+    def on_restart(self, _arguments: Arguments) -> Json:
         """Read the files again and restart the program."""
         self._program.restart()
         return {"then": self._program.end}
 
-    def _terminate(self, _arguments: Arguments) -> Json:
+    def on_disconnect(self, _arguments: Arguments) -> Json:
+        """End the session, which is done after the response."""
+        return {}
+
+    def on_terminate(self, _arguments: Arguments) -> Json:
         """End the program."""
         return {"then": self._program.terminate}
 
     # ------------------------------------------------------------------------------- going
 
-    def _stepping(self, way: Way) -> Handler:
-        return lambda arguments: self._program.go(StepCommand(way, self._program.task(arguments)))
-
-    def _stepping_back(self, way: Way) -> Handler:
-        return lambda arguments: self._program.go(Back(way, self._program.task(arguments)))
-
-    def _pause(self, _arguments: Arguments) -> Json:
+    def on_pause(self, _arguments: Arguments) -> Json:
         """Stop at the next statement."""
         self._program.pause()
         return {}
 
-    def _goto_targets(self, arguments: Arguments) -> Json:
+    def on_goto_targets(self, arguments: Arguments) -> Json:
         """Return the statement on a line as a target for `goto`."""
         file = self._program.files.named(arguments.inner("source").text("path") or "")
         line = self._program.line_of(arguments.get("line", int, 0))
@@ -165,7 +166,7 @@ class Adapter:
         self._targets.append((line, file))
         return {"targets": [{"id": len(self._targets), "label": f"line {shown}", "line": shown}]}
 
-    def _goto(self, arguments: Arguments) -> Json:
+    def on_goto(self, arguments: Arguments) -> Json:
         """Continue at a line of the routine without executing the lines between."""
         number = arguments.get("targetId", int, 0)
         if not 0 < number <= len(self._targets):

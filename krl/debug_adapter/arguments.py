@@ -1,6 +1,6 @@
 """Arguments of requests, which clients may omit or get wrong."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from enum import Enum
 from pathlib import Path
 from typing import Any, TypeVar
@@ -66,8 +66,3 @@ class Arguments:
     def all(self, name: str) -> "list[Arguments]":
         """Return an argument that is a list of objects."""
         return [Arguments(one) for one in self.get(name, list, []) if isinstance(one, dict)]
-
-
-#: Handles a request and returns the body of the response. A function under the key ``then`` is
-#: removed from the body and called after the response was sent.
-Handler = Callable[[Arguments], dict[str, Any]]

@@ -1,13 +1,11 @@
 """Breakpoints on lines, data breakpoints, and stops at faults."""
 
-from collections.abc import Mapping
-
 from interp.debugging.breakpoints import is_hit
 from interp.debugging.client import Breakpoint, Watch
 from interp.debugging.conditions import parsed
 from interp.debugging.debugger import Debugger
 from interp.values.faults import RuntimeFailure
-from krl.debug_adapter.arguments import Arguments, Handler
+from krl.debug_adapter.arguments import Arguments
 from krl.debug_adapter.connection import Json
 from krl.debug_adapter.debuggee import TASKS, Debuggee
 
@@ -20,15 +18,6 @@ class Breakpoints:
         self._of_files: dict[str, list[Breakpoint]] = {}
         self._watches: dict[str, Watch] = {}
         self._is_stopping_at_faults = True
-        #: The handler of each request.
-        self.requests: Mapping[str, Handler] = {
-            "setBreakpoints": self._set_breakpoints,
-            "breakpointLocations": self._breakpoint_locations,
-            "setExceptionBreakpoints": self._set_exception_breakpoints,
-            "exceptionInfo": self._exception_info,
-            "dataBreakpointInfo": self._data_breakpoint_info,
-            "setDataBreakpoints": self._set_data_breakpoints,
-        }
 
     def install(self, debugger: Debugger) -> None:
         """Set the breakpoints in the debugger of a new run; data breakpoints do not persist."""
@@ -39,7 +28,7 @@ class Breakpoints:
     def _every(self) -> list[Breakpoint]:
         return [one for found in self._of_files.values() for one in found]
 
-    def _set_breakpoints(self, arguments: Arguments) -> Json:
+    def on_set_breakpoints(self, arguments: Arguments) -> Json:
         """Replace the breakpoints of one file; each moves to the next line with a statement."""
         source = arguments.inner("source")
         file = self._program.files.named(source.text("path") or source.text("name") or "")
@@ -79,7 +68,7 @@ class Breakpoints:
             return str(error)
         return ""
 
-    def _breakpoint_locations(self, arguments: Arguments) -> Json:
+    def on_breakpoint_locations(self, arguments: Arguments) -> Json:
         """Return the lines of a range at which a program can stop."""
         file = self._program.files.named(arguments.inner("source").text("path") or "")
         first = self._program.line_of(arguments.get("line", int, 0))
@@ -88,7 +77,7 @@ class Breakpoints:
         there = [self._program.line_for(line) for line in lines if first <= line <= last]
         return {"breakpoints": [{"line": line} for line in there]}
 
-    def _set_exception_breakpoints(self, arguments: Arguments) -> Json:
+    def on_set_exception_breakpoints(self, arguments: Arguments) -> Json:
         """Set whether to stop at faults."""
         filters = arguments.values.get("filters")
         self._is_stopping_at_faults = isinstance(filters, list) and "faults" in filters
@@ -96,7 +85,7 @@ class Breakpoints:
             self._program.debugger.stops_at_faults = self._is_stopping_at_faults
         return {}
 
-    def _exception_info(self, _arguments: Arguments) -> Json:
+    def on_exception_info(self, _arguments: Arguments) -> Json:
         """Return the fault at which the program has stopped."""
         self._program.wait_for_stop()
         return {
@@ -105,7 +94,7 @@ class Breakpoints:
             "breakMode": "unhandled" if self._program.stop.reason == "fault" else "never",
         }
 
-    def _data_breakpoint_info(self, arguments: Arguments) -> Json:
+    def on_data_breakpoint_info(self, arguments: Arguments) -> Json:
         """Return how a variable can be watched."""
         self._program.wait_for_stop()
         reference = arguments.get("variablesReference", int, 0)
@@ -121,7 +110,7 @@ class Breakpoints:
             "canPersist": False,
         }
 
-    def _set_data_breakpoints(self, arguments: Arguments) -> Json:
+    def on_set_data_breakpoints(self, arguments: Arguments) -> Json:
         """Replace the data breakpoints; those that are already set are kept."""
         wanted = [one.text("dataId") or "" for one in arguments.all("breakpoints")]
         if wanted or self._watches:  # VS Code says at the start that there are none

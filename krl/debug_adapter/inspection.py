@@ -1,8 +1,6 @@
 """Inspecting a stopped program: threads, frames, variables, expressions, sources."""
 
-from collections.abc import Mapping
-
-from krl.debug_adapter.arguments import Arguments, Handler, Refused
+from krl.debug_adapter.arguments import Arguments, Refused
 from krl.debug_adapter.connection import Json
 from krl.debug_adapter.debuggee import ARM, FRAMES, TASKS, Debuggee
 
@@ -12,25 +10,14 @@ class Inspection:
 
     def __init__(self, program: Debuggee) -> None:
         self._program = program
-        #: The handler of each request.
-        self.requests: Mapping[str, Handler] = {
-            "threads": self._threads,
-            "stackTrace": self._stack_trace,
-            "scopes": self._scopes,
-            "variables": self._variables,
-            "setVariable": self._set_variable,
-            "setExpression": self._set_expression,
-            "evaluate": self._evaluate,
-            "source": self._source,
-        }
 
-    def _threads(self, _arguments: Arguments) -> Json:
+    def on_threads(self, _arguments: Arguments) -> Json:
         """Return the tasks, and the main run, as threads."""
         tasks = self._program.tasks or ("robot",)
         found = [{"id": TASKS.index(one) + 1, "name": one} for one in tasks]
         return {"threads": [*found, {"id": ARM, "name": "arm (main run)"}]}
 
-    def _stack_trace(self, arguments: Arguments) -> Json:
+    def on_stack_trace(self, arguments: Arguments) -> Json:
         """Return the call stack, the innermost frame first; for the arm, the current motion."""
         self._program.wait_for_stop()
         files = self._program.files
@@ -58,12 +45,12 @@ class Inspection:
             "totalFrames": len(every),
         }
 
-    def _scopes(self, arguments: Arguments) -> Json:
+    def on_scopes(self, arguments: Arguments) -> Json:
         """Return the groups of variables of a frame."""
         self._program.wait_for_stop()
         return {"scopes": self._program.variables.scopes(*self._program.frame(arguments))}
 
-    def _variables(self, arguments: Arguments) -> Json:
+    def on_variables(self, arguments: Arguments) -> Json:
         """Return the variables of a group, or the parts of a variable."""
         self._program.wait_for_stop()
         reference = arguments.get("variablesReference", int, 0)
@@ -72,7 +59,7 @@ class Inspection:
             "variables": self._program.variables.children(reference, max(0, start), max(0, count))
         }
 
-    def _set_variable(self, arguments: Arguments) -> Json:
+    def on_set_variable(self, arguments: Arguments) -> Json:
         """Assign a value to a variable."""
         self._program.wait_for_stop()
         found = self._program.variables.assign(
@@ -82,7 +69,7 @@ class Inspection:
         )
         return {"value": found.pop("result"), **found}
 
-    def _set_expression(self, arguments: Arguments) -> Json:
+    def on_set_expression(self, arguments: Arguments) -> Json:
         """Assign a value to the variable that an expression names."""
         self._program.wait_for_stop()
         text, (task, frame) = arguments.text("expression") or "", self._program.frame(arguments)
@@ -90,7 +77,7 @@ class Inspection:
         found = self._program.variables.shown(text, task, frame)
         return {"value": found.pop("result"), **found}
 
-    def _evaluate(self, arguments: Arguments) -> Json:
+    def on_evaluate(self, arguments: Arguments) -> Json:
         """Return the value of an expression; in the console ``NAME = VALUE`` assigns."""
         self._program.wait_for_stop()
         text, (task, frame) = arguments.text("expression") or "", self._program.frame(arguments)
@@ -103,7 +90,7 @@ class Inspection:
             text = name.strip()
         return self._program.variables.shown(text, task, frame)
 
-    def _source(self, arguments: Arguments) -> Json:
+    def on_source(self, arguments: Arguments) -> Json:
         """Return the text of a file in an archive, or of a stand-in."""
         number = arguments.get("sourceReference", int, 0)
         number = arguments.inner("source").get("sourceReference", int, number)
