@@ -224,6 +224,18 @@ def test_a_program_that_a_controller_does_not_load(line: int, verdict: str) -> N
 
 
 @pytest.mark.parametrize(
+    ("code", "verdict"),
+    [("KSS1409", "unconfirmed"), ("KSS1410", "fail"), ("KSS2052", "fail"), ("", "fail")],
+)
+def test_a_message_of_the_run_may_come_before_it(code: str, verdict: str) -> None:
+    """A controller may tell on loading what the case expects later, but nothing else."""
+    asked = case("fault 1409", "value N 2052", more={2: "runs 1"})
+    error = Finding("a.src", 3, "error", code)
+    seen = Observation(findings=(error,), is_exact=False, watched=frozenset())
+    assert verdict == verdict_of(evaluate(asked, seen))[0]
+
+
+@pytest.mark.parametrize(
     ("texts", "events"),
     [
         (["runs 1", "fault overflow [ARI-12]"], [event("line")]),
