@@ -34,32 +34,6 @@ def test_recover_prints_a_table_and_writes_the_record(
     assert {"bytes_per_s", "ratio_vs_antlr_python", "unchanged_s_per_mb"} <= record.keys()
 
 
-@pytest.mark.parametrize("sizes", ["ten", "1,-1", "0", "1;2", "nan", "1e9"])
-def test_sizes_are_megabytes(
-    sizes: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Anything but sizes in MB is refused in one line before anything is measured."""
-    assert 2 == main(["bench", "scale", str(tmp_path), "--sizes", sizes])
-    said = capsys.readouterr().err
-    assert f"krl: --sizes {sizes}: not a list of MB, each above 0 and up to 2,000\n" == said
-
-
-def test_missing_places_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A path that is not there is one line on stderr and status 2."""
-    assert 2 == main(["bench", "recover", str(tmp_path / "gone")])
-    assert "gone: no such file or folder" in capsys.readouterr().err
-
-
-def test_a_corpus_is_needed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Outside a checkout something has to be named."""
-    monkeypatch.chdir(tmp_path)
-    assert 2 == main(["bench", "recover"])
-    said = capsys.readouterr().err
-    assert "krl: there is no corpus/ here: name files, folders or .zip archives\n" == said
-
-
 @pytest.mark.slow
 def test_scale_measures_both_commands_at_each_size(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -115,9 +89,3 @@ def test_growth_leaves_out_what_cannot_be_made(capsys: pytest.CaptureFixture[str
     words = "bench growth --entry asm --largest 32 --jobs 1 --shape".split()
     assert 2 == main([*words, "blocks never closed"])
     assert "nothing to measure" in capsys.readouterr().err
-
-
-def test_growth_refuses_what_it_does_not_know(capsys: pytest.CaptureFixture[str]) -> None:
-    """One line names the commands."""
-    assert 2 == main(["bench", "growth", "--entry", "brew"])
-    assert "--entry brew: not one of check, check sarif," in capsys.readouterr().err

@@ -44,9 +44,3 @@ def test_mistakes_are_planted_without_measuring_speed(
     for row in ("token dropped", "token exchanged", "findings each in the median file"):
         assert row in said
     assert "first check" not in said
-
-
-def test_missing_places_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A path that is not there is one line on stderr and status 2."""
-    assert 2 == main(["bench", "check", str(tmp_path / "gone")])
-    assert "gone: no such file or folder" in capsys.readouterr().err

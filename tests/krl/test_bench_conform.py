@@ -55,12 +55,6 @@ def test_mutants_are_drawn_tried_and_kept(
     assert "seed 6" in capsys.readouterr().out
 
 
-def test_an_unknown_group_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    """The line says which groups there are."""
-    assert 2 == main(["bench", "conform", "--group", "nothing"])
-    assert "the clock" in capsys.readouterr().err
-
-
 def test_laws_are_reported_one_by_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

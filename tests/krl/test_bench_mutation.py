@@ -31,11 +31,3 @@ def test_figures_beside_the_aims(
     assert ("s.g4", 2) == (record["grammar"], record["held_out"])
     for row in ("rule_top1", "repair_top5", "clusters_per_cause", "false_accept"):
         assert row in said
-
-
-def test_what_is_no_grammar_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A grammar that is not there is one line on stderr and status 2."""
-    assert 2 == main(["bench", "mutation", "--grammar", str(tmp_path / "none.g4")])
-    said, complained = capsys.readouterr()
-    assert "" == said
-    assert 1 == complained.count("\n")

@@ -157,25 +157,3 @@ def test_damage(
     assert ("cut", 1) == (cut["damage"], cut["programs"])
     assert "files: 1 programs, 100% executed a motion" in capsys.readouterr().out
     assert records[0]["programs"] == records[1]["programs"], "taken over, wall time and all"
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["missing"], "missing"),
-        (["--damage", "cut,rust", "."], "kinds are files, lists, cut"),
-    ],
-)
-def test_bad_input(
-    options: list[str],
-    tmp_path: Path,
-    said: str,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    """What cannot be used is one line with status 2."""
-    monkeypatch.chdir(some(tmp_path, "ends", "part"))
-    assert 2 == main(["bench", "programs", *options])
-    err = capsys.readouterr().err
-    assert said in err
-    assert 1 == err.count("\n")

@@ -121,33 +121,6 @@ def test_exit_status(arguments: list[str], status: int) -> None:
 
 
 @pytest.mark.usefixtures("programs")
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["NONE.src"], "no such file or folder"),
-        (["B.src", "--select", "XYZ"], "no code begins with XYZ"),
-        (["B.src", "--format", "xml"], "is not one of"),
-        (["B.src", "--out", "."], "a folder, not a file"),
-        (["B.src", "--cache", "B.src"], "not a folder"),
-        (["EMPTY.src"], "EMPTY.src: empty file"),
-        (["JUNK.src"], "JUNK.src: binary data"),
-        ([], "Missing argument"),
-    ],
-)
-def test_wrong_usage_is_one_line(
-    capsys: pytest.CaptureFixture[str], programs: Path, arguments: list[str], said: str
-) -> None:
-    """What cannot be done ends with status 2 and a line that says why."""
-    (programs / "EMPTY.src").write_bytes(b"")
-    (programs / "JUNK.src").write_bytes(bytes(range(256)) * 9)
-    assert 2 == check(*arguments)
-    out, err = capsys.readouterr()
-    assert "" == out
-    assert said in err
-    assert 1 == err.count("\n")
-
-
-@pytest.mark.usefixtures("programs")
 def test_json_has_the_fields_of_the_design(capsys: pytest.CaptureFixture[str]) -> None:
     """A list of records, in order of path and line."""
     found = records(capsys, ".")

@@ -107,27 +107,6 @@ def test_a_run_that_is_terminated_records_what_it_has(
     assert f"terminated while running {record['running'][0]}" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("arguments", "part"),
-    [
-        (["nowhere/nothing"], "no case, suite, rule or phase"),
-        (["control/exit_for", "--executor", "cobol"], "the executor must be one of"),
-        (["control/exit_for", "--robot", "marvin"], "the robot must be one of"),
-        (["import"], "takes one file"),
-        (["import", "nowhere.json"], "cannot be read"),
-        (["--lint", "nowhere"], "no such folder"),
-    ],
-)
-def test_wrong_usage_is_one_line_and_status_2(
-    arguments: list[str], part: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """No traceback, no half work."""
-    assert 2 == run(*arguments)
-    error = capsys.readouterr().err
-    assert part in error
-    assert 1 == len(error.splitlines())
-
-
 def test_lint_reports_each_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A folder of anybody can be looked at; status 1 where something is wrong."""
     folder = tmp_path / "cases"

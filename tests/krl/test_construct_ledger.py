@@ -308,12 +308,3 @@ def test_a_ledger_that_is_not_one_is_one_line(run: Run, command: tuple[str, ...]
     status, _, err = run(*command)
     assert (2, 1) == (status, err.count("\n"))
     assert "0001-for-step.toml: state: 'no' is none of" in err
-
-
-def test_outside_of_a_checkout_it_says_so(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """There is no grammar to replay."""
-    monkeypatch.chdir(tmp_path)
-    assert 2 == main(["construct", "replay", "--check"])
-    assert "preliminary.g4" in capsys.readouterr().err

@@ -161,23 +161,3 @@ def test_synth_reports_other_files(tmp_path: Path, capsys: pytest.CaptureFixture
     (tmp_path / "notes.txt").touch()
     assert 0 == main(["corpus", "synth", "--size", "2kB", "--out", str(tmp_path)])
     assert f"{tmp_path} has 1 file beside them, from before\n" == capsys.readouterr().err
-
-
-@pytest.mark.parametrize("size", ["", "0", "-5", "ten", "10 MBit", "1e6", "0.0001kB"])
-def test_synth_refuses_what_is_no_size(size: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """A size that is none is one line and status 2."""
-    assert 2 == main(["corpus", "synth", f"--size={size}"])
-    expected = f"krl: --size {size}: not a number of bytes such as 500000, 300kB or 10MB\n"
-    assert expected.replace("  ", " ").replace(" :", ":") == capsys.readouterr().err.replace(
-        " :", ":"
-    )
-
-
-def test_synth_refuses_a_file_for_a_folder(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """A file where the folder should be is one line and status 2."""
-    place = tmp_path / "a-file"
-    place.touch()
-    assert 2 == main(["corpus", "synth", "--out", str(place)])
-    assert f"krl: {place}: not a folder\n" == capsys.readouterr().err

@@ -175,20 +175,6 @@ def test_help_lists_all_commands(
     assert lines[-1].startswith("back [step|next|out|motion|continue]")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
-        ([], "krl: name a program: krl debug FILE"),
-        (["x.src", "--port", "1"], "krl: --port: only with --dap"),
-        (["x.src"], "krl: x.src: no such file"),
-    ],
-)
-def test_wrong_usage(arguments: list[str], text: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """One line, and status 2."""
-    assert 2 == main(["debug", *arguments])
-    assert text == capsys.readouterr().err.strip()
-
-
 def test_a_repeated_message_is_reported_seldom(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -44,15 +44,6 @@ def test_the_same_is_no_difference(
     assert "2 and 2 files: nothing changed" == capsys.readouterr().out.rstrip()
 
 
-def test_a_side_without_programs_is_told_in_one_line(
-    states: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """What cannot be compared is refused once."""
-    (tmp_path / "note.txt").write_text("a note", encoding="utf-8")
-    assert 2 == main(["diff", states[0], str(tmp_path / "note.txt")])
-    assert 1 == capsys.readouterr().err.count("\n")
-
-
 def test_file_that_went_is_counted(
     states: tuple[str, str], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -121,10 +112,3 @@ def test_git_is_given_what_says_something(
     """--textconv prints a file without comments and layout."""
     assert 0 == main(["diff", "--textconv", f"{states[0]}/a.src"])
     assert ["DEF A()", "INT N", "N = 1"] == capsys.readouterr().out.split("\n")[:3]
-
-
-@pytest.mark.parametrize("words", [["a"], ["none", "none"], ["--textconv", "a", "b"]])
-def test_wrong_usage_is_one_line(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    """One state alone, or one that is not there, is refused."""
-    assert 2 == main(["diff", *words])
-    assert 1 == capsys.readouterr().err.count("\n")

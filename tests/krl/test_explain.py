@@ -34,9 +34,3 @@ def test_without_a_code_all_are_listed(capsys: pytest.CaptureFixture[str]) -> No
     """One line a code."""
     assert 0 == main(["explain"])
     assert list(by_code()) == [line.split()[0] for line in capsys.readouterr().out.splitlines()]
-
-
-def test_an_unknown_code_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    """One line says what may have been meant."""
-    assert 2 == main(["explain", "KSS2295X"])
-    assert "did you mean KSS2295" in capsys.readouterr().err

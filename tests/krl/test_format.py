@@ -143,13 +143,3 @@ def test_one_file_that_is_no_krl_is_reported_once(capsys: pytest.CaptureFixture[
     lay("b.zip", b"junk")
     assert 2 == main(["format", "b.zip"])
     assert ("", "b.zip: skipped: not a zip archive\n") == capsys.readouterr()
-
-
-def test_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:
-    """No path, and a path that is not there, end in one line and status 2."""
-    assert 2 == main(["format"])
-    assert 2 == main(["format", "nowhere"])
-    said = capsys.readouterr()
-    assert "" == said.out
-    assert 2 == len(said.err.splitlines())
-    assert "krl: nowhere: no such file or folder" == said.err.splitlines()[1]

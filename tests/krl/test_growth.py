@@ -100,36 +100,3 @@ def test_the_terminal_shows_the_steps(
     assert "remains: " in said
     assert "\x1b" not in said
     assert f"Page: {tmp_path / 'out' / 'index.html'}" in said
-
-
-#: Command lines that cannot be carried out, by what is wrong with them.
-WRONG = {
-    "a missing place": ["{here}/nowhere"],
-    "a folder without KRL": ["{here}/empty"],
-    "no corpus to fall back on": [],
-    "a ledger that is not there": ["{here}/corpus", "--constructs", "{here}/nowhere"],
-    "a ledger with a damaged file": ["{here}/corpus", "--constructs", "{here}/damaged"],
-    "a ledger whose edit does not fit": ["{here}/corpus", "--constructs", "{here}/unfit"],
-    "a file as output folder": ["{here}/corpus", "--out", "{here}/notes.txt"],
-    "a folder as record": ["{here}/corpus", "--json", "{here}/empty"],
-    "no process": ["{here}/corpus", "--jobs", "0"],
-}
-
-
-@pytest.mark.usefixtures("corpus")
-@pytest.mark.parametrize("what", WRONG)
-def test_wrong_input_is_one_clear_line(
-    what: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """One line on stderr, status 2, nothing on stdout, no page."""
-    for folder in ("empty", "damaged", "unfit"):
-        (tmp_path / folder).mkdir()
-    (tmp_path / "notes.txt").write_text("no KRL", encoding="utf-8")
-    (tmp_path / "damaged" / "0001-a.toml").write_text("title = ", encoding="utf-8")
-    unfit = Construct("a", "A", (Insert("nowhere", (1, 1), "X?"),), 1, "accepted")
-    (tmp_path / "unfit" / "0001-a.toml").write_text(text_of(unfit), encoding="utf-8")
-    assert 2 == main(["growth", *(word.format(here=tmp_path) for word in WRONG[what])])
-    said, complaint = capsys.readouterr()
-    assert ("", 1) == (said, complaint.count("\n"))
-    assert complaint.startswith("krl")
-    assert [] == list(tmp_path.rglob("index.html"))

@@ -18,7 +18,6 @@ from grammar.notation.generate import GRAMMAR
 from krl.cli import main
 from recovery.ledger.construct import Construct, Evidence
 from recovery.ledger.construct_file import text_of
-from support.parallel import dask_cluster
 
 PRELIMINARY = GRAMMAR.with_name("preliminary.g4")
 FINE = b"DEF A()\nHALT\nEND\n"
@@ -120,59 +119,6 @@ def test_strict_is_content_where_every_file_parses(tmp_path: Path) -> None:
     """What is skipped is no finding."""
     root = lay(tmp_path / "corpus", fine=FINE, junk=b"\0\1\2" * 99)
     assert 0 == recover(root, "--out", tmp_path / "out", "--strict")
-
-
-#: Command lines that cannot be carried out, by what is wrong with them.
-WRONG = {
-    "a missing place": ["{here}/nowhere"],
-    "one missing place of two": ["{here}/corpus", "{here}/nowhere"],
-    "a folder without KRL": ["{here}/empty"],
-    "a file that is no KRL by its name": ["{here}/notes.txt"],
-    "a truncated archive": ["{here}/cut.zip"],
-    "no corpus to fall back on": [],
-    "a missing grammar": ["{here}/corpus", "--grammar", "{here}/nowhere.g4"],
-    "a grammar that ends too early": ["{here}/corpus", "--grammar", "{here}/cut.g4"],
-    "a grammar that is no text": ["{here}/corpus", "--grammar", "{here}/noise.g4"],
-    "a left-recursive grammar": ["{here}/corpus", "--grammar", "{here}/left.g4"],
-    "a grammar that is a folder": ["{here}/corpus", "--grammar", "{here}/empty"],
-    "missing negatives": ["{here}/corpus", "--negatives", "{here}/nowhere"],
-    "an unknown option": ["{here}/corpus", "--fast"],
-    "no process": ["{here}/corpus", "--jobs", "0"],
-    "too many processes": ["{here}/corpus", "--jobs", "100000"],
-    "no number of processes": ["{here}/corpus", "--jobs", "many"],
-    "an address without a scheduler": ["{here}/corpus", "--scheduler", "tcp://localhost:1"],
-    "a file as output folder": ["{here}/corpus", "--out", "{here}/notes.txt"],
-    "a folder as record": ["{here}/corpus", "--json", "{here}/empty"],
-}
-
-
-@pytest.mark.parametrize("what", WRONG)
-def test_wrong_input_is_one_clear_line(
-    what: str,
-    tmp_path: Path,
-    elsewhere: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """One line on stderr, status 2, nothing on stdout, and nothing written."""
-    monkeypatch.setattr(dask_cluster, "_GREETING", 0.1)  # no scheduler comes that late
-    lay(tmp_path / "corpus", fine=FINE)
-    (tmp_path / "empty").mkdir()
-    (tmp_path / "notes.txt").write_text("no KRL", encoding="utf-8")
-    (tmp_path / "cut.zip").write_bytes(b"PK\x03\x04 and no more")
-    (tmp_path / "cut.g4").write_text("grammar X;\ns : A", encoding="utf-8")
-    (tmp_path / "noise.g4").write_bytes(b"\xff\xfe\x00\x01")
-    (tmp_path / "left.g4").write_text("grammar X;\ns : s A | A ;\nA : 'A' ;\n", encoding="utf-8")
-    before = tree(tmp_path)
-    assert 2 == main(["recover", *(word.format(here=tmp_path) for word in WRONG[what])])
-    said, complaint = capsys.readouterr()
-    assert "" == said
-    assert complaint.startswith("krl")
-    assert 1 == complaint.count("\n")
-    assert complaint.strip().isprintable()
-    assert "defect" not in complaint
-    assert before == tree(tmp_path)
-    assert [] == list(elsewhere.iterdir())
 
 
 # ---------------------------------------------------------------------------- what it writes

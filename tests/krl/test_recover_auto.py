@@ -224,31 +224,6 @@ def test_a_record_that_is_none(
     assert f"krl: {file}: not the record of an automatic recovery\n" == capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (["--auto", "--hold-out", "1"], "--hold-out 1"),
-        (["--auto", "--resume", "--out", "nowhere"], "nothing to resume"),
-        (["--resume"], "belong to --auto"),
-        (["--target", "KRL.g4"], "belong to --auto"),
-        (["--without", "3"], "belong to --auto"),
-        (["--suffix", ".s"], "belong to --auto"),
-        (["--seed", "4"], "--seed"),
-        (["--auto", "--hold-out", "0.1"], "--hold-out 0.1 holds no file out"),
-        (["--auto", "--suffix", ".s"], "needs --grammar"),
-        (["--auto", "--without", "3000"], "--without 3000"),
-        (["--auto", "--without", "3", "--resume"], "--without"),
-        (["--auto", "--target", "nowhere.g4"], "nowhere.g4"),
-    ],
-)
-def test_wrong_usage(
-    corpus: Path, arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Wrong usage is one line and status 2."""
-    assert main(["recover", str(corpus), *arguments]) == 2
-    assert said in capsys.readouterr().err
-
-
 @pytest.mark.parametrize("options", [["--grammar", "{}/start.g4"], ["--resume", "--out", "{}"]])
 def test_a_start_without_line_ends(
     corpus: Path, tmp_path: Path, options: list[str], capsys: pytest.CaptureFixture[str]

@@ -200,14 +200,6 @@ def test_frames_that_are_none(ask: Ask, frame: str) -> None:
     assert (2, f"krl: --tool takes six numbers X,Y,Z,A,B,C, not {frame!r}\n") == (status, err)
 
 
-def test_points_that_are_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A missing file is named."""
-    machine, missing = tmp_path / "$machine.dat", tmp_path / "nowhere.json"
-    machine.write_text(MACHINE, encoding="cp1252")
-    assert 2 == main(["robot", "status-turn", "--machine", str(machine), str(missing)])
-    assert f"krl: {missing}: No such file or directory\n" == capsys.readouterr().err
-
-
 def test_without_the_extra(ask: Ask, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the packages for the arm are not installed, one line says how to get them."""
     monkeypatch.setitem(sys.modules, "numpy", None)

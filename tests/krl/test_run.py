@@ -443,53 +443,6 @@ def test_page(run: Run, tmp_path: Path) -> None:
 # -- bad input -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (["--routine", "nowhere"], "krl: there is no routine nowhere\n"),
-        (["--submit", "nowhere"], "there is no routine "),
-        (["--profile", "kss99"], "kss99"),
-        (["--profile", "missing.toml"], "missing.toml cannot be read"),
-        (["--io", "missing.io"], "missing.io"),
-        (["--path", "path.csv"], "krl: --path: the robot none takes no set-points; say --robot "),
-        (["--robot", "kinematic", "--path", "p.txt"], "ends neither in .parquet nor in .csv\n"),
-        (["--video", "film.gif"], "krl: --video: only the MuJoCo arm can be filmed; say "),
-        (["--robot", "mujoco", "--video", "film.mov"], "film.mov"),
-        (["--png", "arm.png"], "krl: --png: only the MuJoCo arm can be filmed; say "),
-        (["--robot", "mujoco", "--png", "arm.jpg"], "arm.jpg: should end in .png"),
-        (["--executor", "lua"], "krl run: Invalid value for '--executor': 'lua' is not one of "),
-        (["--max-time", "-1"], "--max-time"),
-        (["--trace", "."], "krl: .: a folder, not a file\n"),
-    ],
-)
-def test_bad_options(run: Run, options: list[str], said: str) -> None:
-    """Each wrong option is one line that names it, with status 2; nothing runs."""
-    status, out, err = run("HALT\n", *options)
-    assert (2, "") == (status, out)
-    assert said in err
-    assert 1 == err.count("\n")
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "said"),
-    [
-        ("missing.src", None, "no such file"),
-        ("data.dat", b"DEFDAT data\nENDDAT\n", "there is no routine"),
-        ("binary.src", b"\x00\x01\x02\xff\xfe" * 40, "binary.src"),
-        ("takes.src", b"DEF takes (A :IN )\nEND\n", "takes has parameters"),
-        ("empty.src", b"", "empty.src"),
-    ],
-)
-def test_bad_files(run: Run, tmp_path: Path, name: str, content: bytes | None, said: str) -> None:
-    """A file that cannot be run is one line with status 2."""
-    if content is not None:
-        (tmp_path / name).write_bytes(content)
-    status, out, err = run(None, str(tmp_path / name))
-    assert (2, "") == (status, out)
-    assert said in err
-    assert 1 == err.count("\n")
-
-
 def test_routines_that_move_are_named(run: Run) -> None:
     """Where a run began with a routine that does not move, those of its file that do are named."""
     status, _, err = run("END\nDEF go ( )\nPTP {A1 5}\nEND\nDEF idle ( )\n")
@@ -521,16 +474,6 @@ def test_a_folder_is_no_program(run: Run, tmp_path: Path) -> None:
         status, out, err = run(None, str(tmp_path / name))
         assert (2, "") == (status, out)
         assert err.endswith(f"name one of {tmp_path / program}\n"), err
-
-
-def test_output_needs_a_file(run: Run) -> None:
-    """A dash is no place to write to, and nothing runs."""
-    status, out, err = run("HALT\n", "--trace", "-")
-    assert (2, "", "krl: -: output cannot go to standard output; name a file\n") == (
-        status,
-        out,
-        err,
-    )
 
 
 def test_files_that_are_left_out(run: Run, tmp_path: Path) -> None:

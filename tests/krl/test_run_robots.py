@@ -151,23 +151,3 @@ def _urdf(effort: float) -> str:
             f'<limit lower="-3" upper="3" effort="{effort}" velocity="3"/></joint>'
         )
     return "".join([*parts, "</robot>"])
-
-
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        (("--scene", "@s.toml"), "krl: --scene: the robot none has no position"),
-        (("--machine", "@s.toml", "--urdf", "@s.toml"), "krl: --machine, --urdf and --mjcf: only"),
-        (("--machine", "@s.toml"), "krl: s.toml: not machine data"),
-        (("--machine", "@no.dat"), "krl: no.dat: No such file"),
-        (("--mjcf", "@s.toml"), "krl: s.toml:1: not XML"),
-        (("--robot", "kinematic", "--scene", "@s.toml"), "krl: s.toml:1: shape of 'a' is none of"),
-        (("--robot", "kinematic", "--scene", "@no.toml"), "krl: no.toml: No such file"),
-    ],
-)
-def test_bad_files(run: Run, options: tuple[str, ...], said: str) -> None:
-    """Status 2 and one line, with file and line."""
-    status, _, err = run(*options, s_toml='[[object]]\nname = "a"\n')
-    assert 2 == status
-    assert err.startswith(said)
-    assert 1 == len(err.splitlines())

@@ -266,17 +266,3 @@ def test_command_with_differences(
     out = capsys.readouterr().out
     assert first["expected"] in out
     assert "reduced to" in out
-
-
-@pytest.mark.parametrize(
-    ("arguments", "text"),
-    [
-        (["--executor", "tree"], "name two executors at least"),
-        (["--executor", "nobody", "--executor", "tree"], "the executor must be one of"),
-        (["--json", "."], "a folder, not a file"),
-    ],
-)
-def test_wrong_usage(arguments: list[str], text: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """Wrong usage ends with one clear line and exit status 2."""
-    assert 2 == main(["fuzz", *arguments])
-    assert text in capsys.readouterr().err

@@ -23,33 +23,6 @@ def test_text_and_image_round_trip(
     assert image.read_bytes() == source.with_suffix(".krlb").read_bytes()
 
 
-@pytest.mark.parametrize(
-    ("command", "content", "message"),
-    [
-        ("asm", b"\xff\xfe", "not a text in UTF-8"),
-        ("asm", b"bytecode 4\nnothing\n", "line 2: nothing begins no section"),
-        ("asm", b"bytecode 4\n", "there is no code object"),
-        ("disasm", b"", "not an image"),
-        ("disasm", b"KRLI" + bytes(40), "has format 0"),
-    ],
-)
-def test_what_is_wrong_is_reported_on_one_line(
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    command: str,
-    content: bytes,
-    message: str,
-) -> None:
-    """Status 2, the file, and why; no image is left behind."""
-    file = tmp_path / "program"
-    file.write_bytes(content)
-    assert 2 == main([command, str(file)])
-    told = capsys.readouterr().err
-    assert message in told
-    assert 1 == told.count("\n")
-    assert [file] == list(tmp_path.iterdir())
-
-
 def test_what_was_compiled_is_not_compiled_again(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -126,9 +99,3 @@ def test_real_code(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     assert ["runs", "unlinked", "errors", "runs"] == [one["stage"] for one in found["trials"]]
     assert {"end": 1, "unlinked": 1, "fault": 1} == found["endings"]["vm"]
     assert (4, 3, 0) == (found["routines"], found["ran"], found["differences"])
-
-
-def test_unknown_executors(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """An executor that is not there is told."""
-    assert 2 == main(["bench", "real-code", str(project), "--executor", "abacus"])
-    assert "there is no abacus here" in capsys.readouterr().err
