@@ -49,30 +49,6 @@ def test_numbers_of_interrupts(agrees: Agrees, line: str) -> None:
     agrees(routine("DECL INT I", "I = 5", line))
 
 
-@pytest.mark.parametrize(
-    ("rule", "line"),
-    [
-        ("TRG-01", "WHEN DISTANCE=1 DELAY=-20 DO $OUT[1]=TRUE"),
-        ("TRG-01", "WHEN DISTANCE=I DELAY=0 DO $OUT[1]=TRUE"),
-        ("TRG-01", "WHEN DISTANCE=0.5 DELAY=0 DO $OUT[1]=TRUE ;> KRL509"),
-        ("TRG-03", "WHEN DISTANCE=0 DELAY=10000000 DO $OUT[1]=TRUE"),
-        ("TRG-03", "WHEN DISTANCE=0 DELAY=-10000001 DO $OUT[1]=TRUE ;> KRL509"),
-        ("TRG-04", "WHEN PATH=-10000000 DELAY=0 DO $OUT[1]=TRUE"),
-        ("TRG-04", "WHEN PATH=10000001 DELAY=0 DO $OUT[1]=TRUE ;> KRL509"),
-        ("TRG-05", "WHEN DISTANCE=0 DELAY=0 DO PULSE($OUT[1], TRUE, 0.5)"),
-        ("TRG-05", "WHEN DISTANCE=0 DELAY=0 DO I=1 ;> KRL511"),
-        ("TRG-06", "WHEN DISTANCE=0 DELAY=0 DO WORK() PRIO=-1"),
-        ("TRG-06", "WHEN DISTANCE=0 DELAY=0 DO WORK() PRIO=39"),
-        ("TRG-06", "WHEN DISTANCE=0 DELAY=0 DO WORK() PRIO=3 ;> KRL510"),
-        ("TRG-06", "WHEN DISTANCE=0 DELAY=0 DO WORK() ;> KRL510"),
-    ],
-)
-def test_triggers(agrees: Agrees, rule: str, line: str) -> None:
-    """What a trigger is given lies within its limits."""
-    assert rule.startswith("TRG")
-    agrees(routine("DECL INT I", "I = 5", f"TRIGGER {line}", "LIN $POS_ACT"))
-
-
 PATH = "TRIGGER WHEN PATH=-5 DELAY=0 DO $OUT[1]=TRUE"
 
 

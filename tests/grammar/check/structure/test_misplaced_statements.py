@@ -121,30 +121,6 @@ def test_other_routines_may(agrees: Agrees) -> None:
     agrees(INTERRUPTS.format(declaration=declared, **marks))
 
 
-@pytest.mark.parametrize(
-    ("rule", "block", "line"),
-    [
-        ("SPL-01", "SPLINE", "SPL $POS_ACT"),
-        ("SPL-01", "SPLINE", "SLIN $POS_ACT WITH $VEL.CP = 0.2"),
-        ("SPL-01", "SPLINE", "SCIRC $POS_ACT, $POS_ACT"),
-        ("SPL-01", "SPLINE", "SPTP $POS_ACT ;> KSS2359"),
-        ("SPL-04", "SPLINE", "LIN $POS_ACT ;> KSS2359"),
-        ("SPL-04", "SPLINE", "SLIN $POS_ACT C_SPL ;> KSS2360"),
-        ("SPL-01", "PTP_SPLINE", "SPTP $POS_ACT"),
-        ("SPL-01", "PTP_SPLINE", "SLIN $POS_ACT ;> KSS2380"),
-        ("SPL-04", "PTP_SPLINE", "PTP $POS_ACT ;> KSS2380"),
-        ("SPL-04", "SPLINE", "TRIGGER WHEN DISTANCE=1 DELAY=0 DO $OUT[1]=TRUE ;> KSS2363"),
-        ("SPL-07", "SPLINE", "TRIGGER WHEN PATH=5 ONSTART DELAY=0 DO $OUT[1]=TRUE"),
-        ("SPL-06", "SPLINE", "STOP WHEN PATH=50 ONSTART IF $IN[1]"),
-        ("SPL-10", "SPLINE", "CONST_VEL START = 5.0"),
-    ],
-)
-def test_what_spline_blocks_hold(agrees: Agrees, rule: str, block: str, line: str) -> None:
-    """Each kind of block has its motions, and none is approximated."""
-    assert rule.startswith("SPL")
-    agrees(routine(block, f"  {line}", "ENDSPLINE C_SPL"))
-
-
 def test_constant_velocity_and_times_exclude_each_other(agrees: Agrees) -> None:
     """The second kind in a block is told, once [SPL-10]."""
     agrees(
