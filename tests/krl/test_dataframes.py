@@ -29,16 +29,6 @@ def test_a_survey_becomes_tables(dataframes: ModuleType, tmp_path: Path) -> None
     assert set(dataframes.proposals(survey)["cluster"]) <= set(found["id"])
 
 
-def test_findings_become_a_table(dataframes: ModuleType, tmp_path: Path) -> None:
-    """A row a finding; without any, the columns are there all the same."""
-    for name, text in (("good", "DEF GOOD()\nEND\n"), ("bad", "DEF BAD()\nn = 1\nEND\n")):
-        (tmp_path / f"{name}.src").write_text(text, encoding="utf-8")
-    found = dataframes.findings(dataframes.record("check", tmp_path / "bad.src"))
-    assert 2 in found["line"].tolist()
-    none = dataframes.findings(dataframes.record("check", tmp_path / "good.src"))
-    assert (0, True) == (len(none), "code" in none.columns)
-
-
 def test_what_cannot_be_done_is_reported(dataframes: ModuleType, tmp_path: Path) -> None:
     """Status 2 is an error with the line that the command said."""
     with pytest.raises(dataframes.CommandError, match="missing"):

@@ -17,8 +17,8 @@ from grammar.notation.g4 import read as read_grammar
 from grammar.parser.coverage import GrammarCoverage
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
-from grammar.parser.sexpr import Expression, Shortener, write
-from grammar.parser.syntax_cases import CaseReader, SyntaxCase, SyntaxCaseError, main, read_cases
+from grammar.parser.sexpr import Shortener, write
+from grammar.parser.syntax_cases import CaseReader, SyntaxCaseError, main, read_cases
 from grammar.parser.tree import Tree
 
 TOPICS = sorted(Path(__file__).parents[1].joinpath("syntax_cases").glob("*.txt"))
@@ -156,17 +156,6 @@ def test_what_is_shown(rules: Sequence[str], text: str, expected: str) -> None:
     assert expected == write(Shortener(grammar).expression(tree))
 
 
-def test_long_trees_are_broken_into_lines() -> None:
-    """What fits is one line; else the name and the first tokens are, and the rest is indented."""
-    tree: Expression = ("a", "x", ("b", "y", ("c",)), "+", ("d", "long", "longer"))
-    assert "(a x (b y (c)) + (d long longer))" == write(tree)
-    assert "(a x\n  (b y (c))\n  +\n  (d long longer))" == write(tree, 20)
-    assert "(a x\n  (b y (c))\n  +\n  (d long longer))" == write(tree, 18)
-    assert "(a x\n  (b y\n    (c))\n  +\n  (d long longer))" == write(tree, 8)
-    tree = ("a", ("b", "x"), "STEP", "=", ("c", "y"), ("d", "z"), "WITH", "5")
-    assert "(a\n  (b x)\n  STEP =\n  (c y)\n  (d z)\n  WITH 5)" == write(tree, 20)
-
-
 # ------------------------------------------------------------------------- files of cases
 
 GOOD = """\
@@ -192,15 +181,6 @@ END
 ---
 3:6 HALT
 """
-
-
-def test_how_cases_are_read() -> None:
-    """A case is a title, perhaps a mark, the source without blank lines around it, and the rest."""
-    assert [
-        SyntaxCase("one", "DEF A()\nEND\n", False, "(procedure A)", (8, 11)),
-        SyntaxCase("two", "DEF A()\n\nHALT HALT\nEND\n", True, "3:6 HALT", (20, 22)),
-    ] == read_cases(GOOD)
-    assert [] == read_cases("\n")
 
 
 @pytest.mark.parametrize(
@@ -234,13 +214,6 @@ def test_what_differs(reader: CaseReader) -> None:
     assert ["no error, but\n(procedure A)", "no program: 3:6 HALT"] == [
         reader.difference(case) for case in swapped
     ]
-
-
-def test_layout_makes_no_difference(reader: CaseReader) -> None:
-    """A tree may be broken into lines anywhere, and updating leaves it so."""
-    text = GOOD.replace("(procedure A)", "(procedure\n\n    A)").replace("3:6 H", "3:6   H")
-    assert [None, None] == [reader.difference(case) for case in read_cases(text)]
-    assert text == reader.updated(text)
 
 
 def test_updating(reader: CaseReader) -> None:

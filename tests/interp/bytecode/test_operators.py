@@ -16,9 +16,7 @@ from interp.bytecode.program import Program
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
 from interp.port.requests import Fail, Write
-from interp.values.builtins import FUNCTIONS
-from interp.values.faults import Fault
-from interp.values.operators import PRIMITIVES, Primitive
+from interp.values.operators import PRIMITIVES
 from interp.values.values import single
 
 _INTS = st.integers(-(2**31), 2**31 - 1) | st.integers(-9, 9)
@@ -28,8 +26,6 @@ _VALUES: dict[str, st.SearchStrategy[Any]] = {
     "BOOL": st.booleans(),
     "CHAR": st.integers(0, 255).map(chr),
 }
-_SCALAR = [one for one in PRIMITIVES.values() if {*one.operands} <= {*_VALUES}]
-_REAL_FUNCTIONS = [one for one in FUNCTIONS.values() if {*one.operands} <= {*_VALUES}]
 
 
 def _pushed(kind: str, value: Any) -> str:
@@ -58,34 +54,6 @@ def _outcome(program: Program) -> Any:
     return request.value
 
 
-def _expected(primitive: Primitive, values: Any) -> Any:
-    try:
-        return primitive.function(*values)
-    except Fault as error:
-        return error
-
-
-def _same(one: Any, other: Any) -> bool:
-    return type(one) is type(other) and one == other and str(one) == str(other)
-
-
-@pytest.mark.parametrize("primitive", _SCALAR, ids=lambda one: str(one.name))
-def test_primitives_are_the_same(primitive: Primitive) -> None:
-    """Every operator on scalars gives the same value, of the same kind, or the same fault."""
-
-    @given(st.tuples(*(_VALUES[kind] for kind in primitive.operands)))
-    def agree(values: Any) -> None:
-        values = tuple(
-            _as_kept(kind, value) for kind, value in zip(primitive.operands, values, strict=True)
-        )
-        found = _outcome(
-            _program(primitive.operands, primitive.result, values, primitive.name.upper())
-        )
-        assert _same(_expected(primitive, values), found)
-
-    agree()
-
-
 @pytest.mark.parametrize("name", [op.name for op in Op if op.name.startswith("UNLESS")])
 def test_fused_comparisons_are_the_same(name: str) -> None:
     """A comparison that jumps does so exactly where the one that gives a value gives FALSE."""
@@ -108,23 +76,6 @@ def test_adding_a_constant_is_adding(left: int, right: int) -> None:
     """The short form overflows where the long one does."""
     long = _outcome(_program(("INT", "INT"), "INT", (left, right), "ADD_INT"))
     assert long == _outcome(_program(("INT",), "INT", (left,), f"ADD_CONSTANT {right}"))
-
-
-@pytest.mark.parametrize("primitive", _REAL_FUNCTIONS, ids=lambda one: str(one.name))
-def test_functions_are_the_same(primitive: Primitive) -> None:
-    """SIN and its like give the same REAL or the same fault."""
-    name = primitive.name.upper()
-    inputs = " ".join("in:REAL" for _ in primitive.operands)
-
-    @given(st.tuples(*(_VALUES["REAL"] for _ in primitive.operands)))
-    @settings(max_examples=20)
-    def agree(values: Any) -> None:
-        values = tuple(_as_kept("REAL", value) for value in values)
-        head = f"builtin F {name} {inputs} -> REAL"
-        found = _outcome(_program(primitive.operands, "REAL", values, "BUILTIN F", head))
-        assert _same(_expected(primitive, values), found)
-
-    agree()
 
 
 def _as_kept(kind: str, value: Any) -> Any:

@@ -142,45 +142,6 @@ def test_a_loop_that_polls_sees_a_change() -> None:
     assert [2_016_000] == [event.time for event in run.events if event.kind == "out"]
 
 
-COMPUTES = """DEF main ( )
-DECL INT I,N
-N=0
-SPTP {A1 10,A2 -90,A3 90,A4 0,A5 0,A6 0}
-PULSE ($OUT[9],TRUE,0.7 )
-FOR I=1 TO 9000
-  N=N+F(I)
-  IF (I==3000) OR (I==7001) THEN
-    $OUT[1]=NOT $OUT[1]
-    N=N+F(I)+F(I)
-  ENDIF
-ENDFOR
-WAIT FOR $IN[3]
-FOR I=1 TO 900
-  N=N-1
-ENDFOR
-$OUT[2]=N==0
-N=N/0
-END
-DEFFCT INT F(X:IN )
-INT X
-IF X<5000 THEN
-  RETURN 1
-ENDIF
-RETURN 2
-ENDFCT
-"""
-
-
-@pytest.mark.parametrize("executor", [name for name in available() if name != "tree"])
-@pytest.mark.parametrize("io", ["", "t=0.5 IN[3]=TRUE\nt=1.1 IN[4]=TRUE\n", OPERATOR])
-def test_slices_at_once(executor: str, io: str) -> None:
-    """A run that tells no calls gives programs many slices at once; all else comes as it did."""
-    program = load([Source(COMPUTES, "main.src")], "main.src", strict=False)
-    setup = RunSetup(executor=executor, script=Script.read(io), until=5_000_000)
-    told, quick = run_program(program, setup), run_program(program, replace(setup, is_traced=False))
-    _assert_same(told, quick)
-
-
 def test_computing_between_looks_at_inputs() -> None:
     """Automatic inputs change at the same times for a program that got many slices at once."""
     computes = "FOR I=1 TO 130007\nENDFOR\n"

@@ -187,19 +187,6 @@ def test_a_program_does_the_same_under_a_debugger(name: str, per_slice: int) -> 
 # ------------------------------------------------------------------------------- breakpoints
 
 
-def test_it_stops_before_the_first_statement(debug: Any) -> None:
-    """The first stop comes before anything was executed."""
-    script, _ = debug(lambda debugger: debugger.frames()[0].name)
-    assert [("entry", 4)] == [(one.reason, one.at.line) for one in script.stops]
-    assert ["MAIN"] == script.seen
-
-
-def test_breakpoint_stops_at_each_pass(debug: Any) -> None:
-    """A breakpoint in a loop is met at each pass."""
-    script, _ = debug(lambda debugger: debugger.breakpoints.set([Breakpoint("main.src", 16)]))
-    assert [4, 16, 16, 16] == script.lines
-
-
 def test_condition_of_a_breakpoint(debug: Any) -> None:
     """A breakpoint with a condition stops only where it is TRUE."""
     set_one = Breakpoint("MAIN.SRC", 16, "(I==4) AND (F.X>5.0) AND NOT (A[1]==A[2])")
@@ -228,33 +215,7 @@ def test_lines_at_which_a_program_can_stop(debug: Any) -> None:
     assert [3, 4, 5, 6, 5, 6] == script.lines
 
 
-def test_pause(debug: Any) -> None:
-    """A program that is asked to pause stops before its next statement, once."""
-    script, _ = debug(StepCommand(), lambda debugger: debugger.pause(), Go())
-    assert [("entry", 4), ("step", 5), ("pause", 6)] == [
-        (one.reason, one.at.line) for one in script.stops
-    ]
-
-
 # ------------------------------------------------------------------------------- steps
-
-
-def test_step_into_follows_calls(debug: Any) -> None:
-    """Step into stops at the first statement of what is called."""
-    script, _ = debug(*[StepCommand("into")] * 7)
-    assert [4, 5, 6, 7, 8, 26, 27, 9] == script.lines
-
-
-def test_step_over_stays_in_the_routine(debug: Any) -> None:
-    """Step over stops at the next statement of the same routine."""
-    script, _ = debug(*[StepCommand("over")] * 5)
-    assert [4, 5, 6, 7, 8, 9] == script.lines
-
-
-def test_step_out_goes_back_to_the_caller(debug: Any) -> None:
-    """Step out stops at the next statement of the caller."""
-    script, _ = debug(*[StepCommand("into")] * 5, StepCommand("out"))
-    assert [4, 5, 6, 7, 8, 26, 9] == script.lines
 
 
 def test_frames_tell_who_called_from_where(debug: Any) -> None:
@@ -445,18 +406,6 @@ def test_steps_and_actions(name: str, way: Any, lines: list[int]) -> None:
             break
     assert lines == script.lines
     assert ["DeclareInterrupt", "Wait", "Write", "End", "Wait", "Write", "Write", "End"] == asked
-
-
-def test_an_expression_is_no_statement(debug: Any) -> None:
-    """What is no expression is refused with a clear line."""
-
-    def tried(debugger: Debugger) -> str:
-        with pytest.raises(LinkError) as raised:
-            debugger.value("I=")
-        return str(raised.value)
-
-    script, _ = debug(tried)
-    assert ["I=: this is no expression"] == script.seen
 
 
 def test_the_example_of_the_documentation(capsys: pytest.CaptureFixture[str]) -> None:

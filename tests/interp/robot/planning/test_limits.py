@@ -12,7 +12,7 @@ import pytest
 from interp.robot.kinematics.kinematics_choice import kinematics_of
 from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solution_choice import follow
-from interp.robot.path.axis_path import JointCurve, LinearAxes, PosePathCurve
+from interp.robot.path.axis_path import LinearAxes, PosePathCurve
 from interp.robot.path.orientation import turning
 from interp.robot.path.pose_path import StraightLine, poses_of
 from interp.robot.planning.axis_limits import axis_limits
@@ -37,13 +37,6 @@ def line(
     return PosePathCurve(arm, Placement(), pose_path, start[:6], LinearAxes(NONE, NONE))
 
 
-def test_limits_are_those_of_the_machine_data(machine: MachineData) -> None:
-    """Speeds follow from motor and gear, accelerations from the run-up time [MOT-06]."""
-    limits = axis_limits(machine)
-    assert [360, 300, 360, 381, 388, 615, 2500] == pytest.approx(limits.velocity)
-    assert limits.velocity / 0.3 == pytest.approx(limits.acceleration)
-
-
 @pytest.mark.parametrize(
     ("percent", "share"), [(30.0, 0.3), (100.0, 1.0), (130.0, 1.0), (0.0, 1.0)]
 )
@@ -52,17 +45,6 @@ def test_percentages(machine: MachineData, percent: float, share: float) -> None
     limits = axis_limits(machine)
     scaled = limits.scaled((percent,) * 12, (100.0,) * 12, (100.0,) * 12)
     assert limits.velocity * share == pytest.approx(scaled.velocity)
-
-
-def test_a_straight_line_of_axes(machine: MachineData) -> None:
-    """The leading axis sets speed and acceleration of a PTP [MOT-01]."""
-    path = LinearAxes(START, START + np.array([90, 10, 0, 0, 0, 0, 100]))
-    curve = JointCurve(kinematics_of(machine), Placement(), path)
-    limits = axis_limits(machine)
-    (stretch,) = curve_limits_of(curve, limits, limits, ()).stretches
-    assert (4.0, 40.0 / 3.0) == pytest.approx(
-        (stretch.normal.velocity, stretch.normal.acceleration)
-    )
 
 
 def bounds_hold(curve: PosePathCurve, curve_limits: CurveLimits, machine: MachineData) -> None:

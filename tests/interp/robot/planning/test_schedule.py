@@ -38,43 +38,6 @@ def laid(
     return profiles
 
 
-def test_a_slow_stretch_between_fast_ones() -> None:
-    """A stretch is entered and left with no more than its own speed, and travelled with it."""
-    steps = [
-        joined(0.0, 0.0, 0.4, 1.0),
-        joined(1.0, 0.4, 0.6, 0.2),
-        joined(1.0, 0.6, 1.0, 1.0),
-    ]
-    profiles = laid(steps)
-    assert [0.2, 0.2, 0.0] == pytest.approx(seams(steps, profiles), abs=1e-6)
-    assert 1.0 == pytest.approx(profiles[1].duration)
-
-
-def test_what_comes_is_braked_for_in_time() -> None:
-    """A stretch that is too short to brake in is entered slowly enough."""
-    steps = [
-        joined(0.0, 0.0, 0.99, 1.0),
-        joined(1.0, 0.99, 1.0, 1.0),
-    ]
-    out, end = seams(steps, laid(steps))
-    assert 0.0 < out < 0.3
-    assert 0.0 == pytest.approx(end, abs=1e-6)
-
-
-def test_units_change_with_the_gear() -> None:
-    """The speed behind a seam is that before it, told in the next section's units."""
-    steps = [joined(0.0, 0.0, 1.0, 0.5), joined(2.0, 0.0, 1.0, 3.0)]
-    profiles = laid(steps)
-    assert 0.5 == pytest.approx(seams(steps, profiles)[0])
-    assert 1.0 * 1000.0 == pytest.approx(profiles[1].knots[0][2])
-
-
-def test_standing_between() -> None:
-    """A gear of zero is a stop."""
-    steps = [joined(0.0, 0.0, 1.0, 1.0), joined(0.0, 0.0, 1.0, 1.0)]
-    assert [0.0, 0.0] == pytest.approx(seams(steps, laid(steps)), abs=1e-6)
-
-
 def test_too_late_to_brake() -> None:
     """What would be overrun cannot be laid strictly, and otherwise is passed as slow as can be."""
     steps = [joined(0.0, 0.0, 0.5, 1.0), joined(1.0, 0.5, 1.0, 0.1)]
@@ -125,16 +88,6 @@ def test_any_row_of_stretches(lengths: list[float], data: st.DataObject, overrid
         assert max(profile.final, *(knot[2] for knot in profile.knots)) <= most * (1 + 1e-5) + 1e-6
         before = profile.final
     assert 0.0 == pytest.approx(before, abs=1e-4)
-
-
-def test_braking_crosses_a_seam() -> None:
-    """Who is too fast to stop within a stretch stops in the next one."""
-    steps = [joined(0.0, 0.0, 0.5, 1.0), joined(1.0, 0.5, 1.0, 1.0)]
-    profiles = braking(steps, PathState(0.45, 1.0, 0.0), is_hard=False)
-    assert profiles is not None
-    assert 2 == len(profiles)
-    assert 50.0 == pytest.approx(profiles[0].length)
-    assert 0.0 == pytest.approx(profiles[1].final, abs=1e-6)
 
 
 def test_the_hardest_ramp_is_the_shortest() -> None:
