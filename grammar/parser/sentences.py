@@ -218,7 +218,8 @@ class Speller:
             case Literal(text=text):
                 yield text
             case CharSet(ranges=ranges):
-                low, high = ranges[0] if chance is None else chance.choice(ranges)
+                # a letter rather than one of few signs: of [$A-Z] the target may want more than $
+                low, high = max(ranges, key=_width) if chance is None else chance.choice(ranges)
                 if high - low > 0x1000:  # a negated set: anything plain will do
                     low, high = max(low, ord(" ")), ord("~")
                 yield chr(low if chance is None else chance.randint(low, high))
@@ -247,3 +248,7 @@ class Speller:
                 out.append(" ")
             out.append("\n" if sample.strip() == "" else sample)
         return "".join(out)
+
+
+def _width(characters: tuple[int, int]) -> int:
+    return characters[1] - characters[0]

@@ -105,7 +105,7 @@ def recover_auto(roots: Sequence[Path], options: AutoOptions) -> int:
     if target:
         reached = {
             "name": Path(settings.target_path).name,
-            **compared(ledger.grammar, target, shown, held, language),
+            **compared(ledger.start, ledger.grammar, target, shown, held, language),
         }
     page = written.write(is_finished, reached)
     where = options.out / "grammar.g4"
@@ -279,7 +279,7 @@ class _Output:
 
     def write(self, is_finished: bool = False, reached: dict[str, Any] | None = None) -> Path:
         """Write everything; return the path of the page. ``reached`` is the comparison."""
-        from recovery.induction.auto_record import record_of
+        from recovery.induction.induction_folder import record_of
         from reports.recovery.auto_page import write_auto_page
 
         ledger, out = self.ledger, self.folder.path

@@ -107,26 +107,18 @@ class BlockEdits:
         return frozenset[str]().union(*(block.words for block in having))
 
 
-def blocks_of(
-    keywords: InferredKeywords,
-    recognizer: Recognizer,
-    prefixes: frozenset[str],
-) -> list[BlockLines]:
+def blocks_of(keywords: InferredKeywords, recognizer: Recognizer) -> list[BlockLines]:
     """Return the blocks of a corpus that the grammar of the recogniser lacks."""
     vocabulary = Vocabulary(recognizer)
     origins, least = keywords.least
     found: list[BlockLines] = []
     # where few lines show which words are prefixes any word may be one that begins no block
     for is_any in (False, True):
-        leads, tokens = _led(keywords, prefixes, is_any=is_any)
-        files = [
-            SourceFile(tuple((leads[n], tokens[n]) for n in numbers), file.origins)
-            for file, numbers in zip(keywords.corpus.files, keywords.corpus.of_file, strict=True)
-        ]
-        free = {w for w in leads if w.isidentifier() and not vocabulary.is_written(w)}
+        files = led_files(keywords, is_any=is_any)
+        opened = Counter(lead for file in files for lead, _ in file.lines)
+        free = {w for w in opened if w.isidentifier() and not vocabulary.is_written(w)}
         free -= frozenset().union(*(block.words for block in found))
         needed = origins, BALANCED_FILES if least > 1 else 1
-        opened = Counter(leads[n] for numbers in keywords.corpus.of_file for n in numbers)
         found += (
             block
             for block in find_blocks(files, free, needed, keywords.spelt)
@@ -135,24 +127,26 @@ def blocks_of(
     return found
 
 
-def _led(
-    keywords: InferredKeywords, prefixes: frozenset[str], *, is_any: bool
-) -> tuple[list[str], list[tuple[Token, ...]]]:
-    """Return for each line of the corpus the word that leads it, and its tokens.
+def led_files(keywords: InferredKeywords, *, is_any: bool = False) -> list[SourceFile]:
+    """Return the files of the corpus, with the word that leads each line.
 
     That is the word behind a prefix, or with ``is_any`` a new keyword that leads other lines.
     """
     lexer, lines = keywords.lexer, keywords.corpus.lines
     name, leading = lexer.name_kind, keywords.words & {line[0] for line in lines}
-    tokens = []
-    leads = []
+    led = []
     for line in lines:
         meant = dict(keywords.in_line(line))
-        is_led = line[0] in prefixes or (is_any and leading.issuperset(line[1:2]))
+        is_led = line[0] in keywords.prefixes or (is_any and leading.issuperset(line[1:2]))
         at = int(len(line) > 1 and is_led)
         lead = line[at]
         if lead in keywords.words and lexer.kinds[lead] == name:
             meant.setdefault(at, lead)
-        leads.append(lead if lexer.kinds[lead] != name or at in meant else "")
-        tokens.append(tuple((lexer.kinds[word], meant.get(i)) for i, word in enumerate(line)))
-    return leads, tokens
+        tokens = tuple((lexer.kinds[word], meant.get(i)) for i, word in enumerate(line))
+        kind = lexer.kinds[lead]
+        # a token may have another name than its word
+        led.append((meant.get(at, "") if kind == name else lexer.spelled(kind), tokens))
+    return [
+        SourceFile(tuple(led[n] for n in numbers), file.origins)
+        for file, numbers in zip(keywords.corpus.files, keywords.corpus.of_file, strict=True)
+    ]

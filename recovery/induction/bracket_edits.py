@@ -32,14 +32,11 @@ class BracketEdits:
         found: dict[tuple[str, str], dict[tuple[Symbol, ...], list[int]]] = defaultdict(
             lambda: defaultdict(list)
         )
-        for number, line in enumerate(self.at.lines):
-            if line.is_enormous:
-                continue
+        for number, tokens, index in self.at.failures:
             for sign, inside in _groups(self.at.symbols[number]):
                 rule = self.at.rules.bracketed.get(sign)
                 if rule and not any(s.text in self._operands.operators for s in inside):
                     found[rule, sign][self.at.known_groups(inside)].append(number)
-            tokens, index = self.at.tokens[number], line.form.index
             opened = self.at.opened(tokens, index)
             if opened is None or number in self._operands.operator_lines:
                 continue

@@ -31,17 +31,17 @@ class Occurrences:
     ``state`` is the state of the recogniser at the failure.
     """
 
+    state: State
     files: set[int] = field(default_factory=set)
     origins: set[str] = field(default_factory=set)
     seen: list[str] = field(default_factory=list)
     texts: set[tuple[str, ...]] = field(default_factory=set)
-    state: State | None = None
 
 
 class FailingLines:
     """The distinct failing lines of files, ``patterns[n]`` with ``occurrences[n]``.
 
-    Lines with unbalanced brackets are damaged and are left out.
+    Lines with unbalanced brackets are damaged and are left out, and so are enormous ones.
     """
 
     def __init__(
@@ -58,12 +58,11 @@ class FailingLines:
                     continue
                 ends = failure.form.kinds[-1:] == (keywords.lexer.line_kind,)
                 words = tuple(map(str.upper, failure.lexemes[: -1 if ends else None]))
-                if not _is_balanced(words):
-                    continue
                 pattern = LinePattern(failure.form, keywords.in_line(words) if words else ())
-                line = found.setdefault(pattern, Occurrences())
+                if pattern.is_enormous or not _is_balanced(words):
+                    continue
+                line = found.setdefault(pattern, Occurrences(failure.state))
                 line.texts.add(words)
-                line.state = line.state or failure.state
                 line.files.add(place)
                 line.origins |= files[place].origins
                 if len(line.seen) < PLACES_REMEMBERED:

@@ -21,8 +21,7 @@ from grammar.notation.model import (
 )
 from recovery.brackets import BRACKETS
 from recovery.forms.operand_rules import bracket_pairs
-from recovery.forms.samples import samples_of
-from recovery.induction.grammar_view import GrammarView, sign_of
+from recovery.induction.grammar_view import GrammarView, Place, is_optional, item_of
 from recovery.induction.steps import InferredStep
 from recovery.tuning import RULE_SYMBOLS
 
@@ -30,96 +29,33 @@ from recovery.tuning import RULE_SYMBOLS
 def tails(view: GrammarView) -> Iterator[InferredStep]:
     """Yield one form for what follows a declared name, if alternatives of a rule differ in it."""
     for rule in view.line_rules:
-        found: list[tuple[int, int, Sequence[Element]]] = []
+        found: list[Place] = []
         for number in range(1, len(rule.alternatives) + 1):
             elements = view.line(rule.name, number)
             for place, (left, right) in enumerate(pairwise(elements), 1):
                 if view.is_name(left):
                     break  # a name and members of it
-                if _is_kind(view, left) and view.is_name(right):
+                if view.is_kind(left) and view.is_name(right):
                     signs = {e.text for e in elements[place:] if isinstance(e, Literal)}
                     if signs.isdisjoint(BRACKETS):
-                        found.append((number, place, elements[place:]))
+                        found.append(Place(rule.name, (number, place + 1), elements[place:]))
                     break  # a bracket is that of a routine
-        sources = {view.source(rule.name, tail) for _, _, tail in found}
-        if len(sources) < 2:
-            continue
-        shapes = dict.fromkeys(s for _, _, tail in found for s in samples_of(view.rules, tail))
-        form = view.form(shapes)
-        edits = [
-            Replace(rule.name, (number, place + 1), form, len(tail))
-            for number, place, tail in found
-            if form and view.source(rule.name, tail) != form
-        ]
-        title = f"one form for what follows a name in {rule.name}"
-        yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS * len(edits))
+        yield from view.alike(found, f"one form for what follows a name in {rule.name}")
 
 
 def brackets(view: GrammarView) -> Iterator[InferredStep]:
     """Yield one form for brackets after a declared name, if lines of a rule differ in it."""
-    for rule in view.grammar.rules:
-        found: dict[str, list[tuple[int, int, Sequence[Element]]]] = defaultdict(list)
-        for number, alternative in enumerate(() if _is_inner(view, rule) else rule.alternatives, 1):
+    for rule in view.grammar.parser_rules:
+        found: dict[str, list[Place]] = defaultdict(list)
+        is_inner = rule.name in view.rules.within_lines
+        for number, alternative in enumerate(() if is_inner else rule.alternatives, 1):
             for sign, start, end in bracket_pairs(alternative):
-                inside = alternative.elements[start + 1 : end]
                 if start and view.is_name(alternative.elements[start - 1]):
-                    found[sign].append((number, start + 2, inside))
+                    inside = alternative.elements[start + 1 : end]
+                    found[sign].append(Place(rule.name, (number, start + 2), inside))
         for sign, contents in found.items():
-            shapes = [s for *_, inside in contents for s in samples_of(view.rules, inside)]
-            form = view.form(dict.fromkeys(shapes)) or ""
-            edits = tuple(
-                Replace(rule.name, (number, at), form, len(inside))
-                if inside
-                else Insert(rule.name, (number, at), form)
-                for number, at, inside in contents
-                if view.source(rule.name, inside) != form
-            )
             title = f"one form between {sign} and {BRACKETS[sign]} in {rule.name}"
-            if form and len(contents) > 1:
-                yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
-
-
-def lists_of_two(view: GrammarView) -> Iterator[InferredStep]:
-    """Yield any number of items where one and two are read, and no third: these are lists."""
-    for rule in view.line_rules:
-        edits: list[Edit] = []
-        for address, sequence in sequences(rule):
-            is_bounded = any(sign_of(e) == "','" for e in sequence.elements[:1])
-            for place, element in enumerate(() if is_bounded else sequence.elements):
-                match element:
-                    case Repeat(item=Group(alternatives=(Alternative(elements=(comma, *item)),))):
-                        ahead = sequence.elements[max(0, place - len(item)) : place]
-                        is_item = view.source(rule.name, item) == view.source(rule.name, ahead)
-                        if element.operator == "?" and sign_of(comma) == "','" and item and is_item:
-                            text = f"{rule.source_of(element).removesuffix('?')}*"
-                            edits.append(Replace(rule.name, (*address, place + 1), text))
-        title = f"a list of any length in {rule.name}"
-        yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS)
-
-
-def modes(view: GrammarView) -> Iterator[InferredStep]:
-    """Yield one choice for the words that follow a name or type and the same sign."""
-    found: dict[str, list[tuple[Rule, Address, frozenset[str]]]] = defaultdict(list)
-    for rule in view.line_rules:
-        for address, sequence in sequences(rule):
-            for place, (ahead, sign, word) in enumerate(_threes(sequence.elements), 3):
-                words = view.words(word)
-                is_mode = bool(words) and words <= view.reserved
-                if sign_of(sign) and is_mode and (view.is_name(ahead) or _is_kind(view, ahead)):
-                    found[sign_of(sign)].append((rule, (*address, place), words))
-    for text, places in found.items():
-        every = sorted(frozenset[str]().union(*(words for *_, words in places)))
-        edits = tuple(
-            Replace(rule.name, at, f"({' | '.join(every)})")
-            for rule, at, words in places
-            if len(words) < len(every)
-        )
-        title = f"{', '.join(every)} behind {text}"
-        yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
-
-
-def _threes(elements: Sequence[Element]) -> Iterator[tuple[Element, Element, Element]]:
-    return zip(elements, elements[1:], elements[2:], strict=False)
+            yield from view.alike(contents, title)
 
 
 def modifiers(view: GrammarView) -> Iterator[InferredStep]:
@@ -188,8 +124,8 @@ def undeclared(view: GrammarView) -> Iterator[InferredStep]:
         found = []
         for number in range(1, 1 + len(rule.alternatives)):
             line = view.line(rule.name, number)
-            ahead = list(takewhile(lambda e: not _is_kind(view, e), line))
-            sets = [view.words(e.item if isinstance(e, Repeat) else e) for e in ahead]
+            ahead = list(takewhile(lambda e: not view.is_kind(e), line))
+            sets = [view.words(item_of(e)[0]) for e in ahead]
             rest = line[len(ahead) :]
             if len(rest) > 1 and view.is_name(rest[1]) and all(len(s) == 1 for s in sets):
                 found.append((number, ahead, [min(s) for s in sets], rest))
@@ -217,7 +153,7 @@ def undeclared_elsewhere(view: GrammarView) -> Iterator[InferredStep]:
     for rule, number, (first, *others) in view.lines():
         if rule.name in view.rules.recursive:
             continue
-        if _is_kind(view, first) and view.is_name(others[0]):
+        if view.is_kind(first) and view.is_name(others[0]):
             typed.append((rule.name, number, "", view.source(rule.name, others)))
         rests: list[Sequence[Element]] = [others]
         if len(others) == 1 and isinstance(others[0], Group):
@@ -229,9 +165,14 @@ def undeclared_elsewhere(view: GrammarView) -> Iterator[InferredStep]:
             if is_any and name and view.is_name(name[0]):
                 ahead, behind = (view.source(rule.name, some) for some in (between, name))
                 typed.append((rule.name, number, ahead, behind))
-    free = {name for name, number, *_ in typed if _is_kind(view, view.line(name, number)[0])}
+    free: dict[str, set[str]] = defaultdict(set)  # words that may be ahead of a free type, by rule
+    for rule, _, elements in view.lines():
+        optional = list(takewhile(is_optional, elements))
+        rest = elements[len(optional) :]
+        if len(rest) > 1 and view.is_kind(rest[0]) and view.is_name(rest[1]):
+            free[rule.name] |= {"", *_words_in(optional)}
     for host, number, ahead, behind in typed if free else ():
-        if host not in free:
+        if not {"", *ahead.replace("?", "").split()} <= free[host]:
             elements = view.alternative(host, number).elements
             end = view.source(host, elements[len(view.line(host, number)) :])
             text = " ".join(filter(None, (ahead, view.kind, behind, end)))
@@ -249,7 +190,7 @@ def types(view: GrammarView) -> Iterator[InferredStep]:
         narrow: list[tuple[int, Sequence[Element], Element, str]] = []
         for number in range(1, 1 + len(rule.alternatives)):
             line = view.line(rule.name, number)
-            kinds = (n for n, e in enumerate(line[:-1]) if view.words(e) or _is_kind(view, e))
+            kinds = (n for n, e in enumerate(line[:-1]) if view.words(e) or view.is_kind(e))
             place = next((n for n in kinds if view.is_name(line[n + 1])), 0)
             kind, behind = line[place : place + 1], view.source(rule.name, line[place + 1 :][:2])
             match kind:
@@ -279,15 +220,12 @@ def kinds(view: GrammarView) -> Iterator[InferredStep]:
     if view.kind not in view.grammar.by_name:
         return
     every = view.profile.vocabulary.words_of(view.kind)
-    for rule in view.grammar.parser_rules:
-        edits = tuple(
-            Replace(rule.name, (*address, place), view.kind)
-            for address, sequence in sequences(rule)
-            for place, (element, name) in enumerate(pairwise(sequence.elements), 1)
-            if view.is_name(name) and (words := view.words(element)) < every and words
-        )
-        title = f"any word of {view.kind} in {rule.name}"
-        yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS)
+    found: dict[str, list[Place]] = defaultdict(list)
+    for rule, (*outer, place), name, ahead in view.elements():
+        if ahead and view.is_name(name) and (words := view.words(ahead[-1])) < every and words:
+            found[rule.name].append(Place(rule.name, (*outer, place - 1), ahead[-1:]))
+    for rule_name, places in found.items():
+        yield from view.alike(places, f"any word of {view.kind} in {rule_name}", view.kind)
 
 
 def words_of_a_kind(view: GrammarView) -> Iterator[InferredStep]:
@@ -309,8 +247,8 @@ def words_of_a_kind(view: GrammarView) -> Iterator[InferredStep]:
         for address, sequence in sequences(rule):
             elements = sequence.elements
             for place, element in enumerate(elements):
-                words = view.words(element.item if isinstance(element, Repeat) else element)
-                is_typed = _is_kind(view, element)
+                words = view.words(item_of(element)[0])
+                is_typed = view.is_kind(element)
                 name, behind = elements[place + 1 : place + 2], elements[place + 2 :]
                 is_declared = bool(name) and view.is_name(name[0]) and not _is_part(view, behind)
                 ahead = _words_ahead(view, rule, address, place) - is_first
@@ -329,7 +267,7 @@ def words_of_a_kind(view: GrammarView) -> Iterator[InferredStep]:
 def _is_declared(view: GrammarView, alternative: Alternative) -> bool:
     """Return whether a type ahead of a name is the first of an alternative, but for other words."""
     elements = list(dropwhile(lambda e: bool(_modifiers(view, e)), alternative.elements))
-    return len(elements) > 1 and _is_kind(view, elements[0]) and view.is_name(elements[1])
+    return len(elements) > 1 and view.is_kind(elements[0]) and view.is_name(elements[1])
 
 
 def _is_part(view: GrammarView, behind: Iterable[Element]) -> bool:
@@ -347,14 +285,19 @@ def _is_part(view: GrammarView, behind: Iterable[Element]) -> bool:
     return True
 
 
+def _words_in(elements: Iterable[Element]) -> set[str]:
+    """Return the names of tokens in elements."""
+    return {e.name for some in elements for e in walk(some) if isinstance(e, Reference)}
+
+
 def _words_ahead(view: GrammarView, rule: Rule, address: Address, place: int) -> frozenset[str]:
     """Return the words that may be ahead of an element; an empty one if it may begin a line."""
     elements = sequence_at(rule, address).elements
     if place:
         element = elements[place - 1]
-        words = view.words(element.item if isinstance(element, Repeat) else element)
-        is_free = isinstance(element, Repeat) and element.operator != "+"
-        return words | (_words_ahead(view, rule, address, place - 1) if is_free else frozenset())
+        words = view.words(item_of(element)[0])
+        further = _words_ahead(view, rule, address, place - 1) if is_optional(element) else ()
+        return words.union(further)
     if len(address) == 1:
         return frozenset({""})
     *outer, at, _ = address
@@ -370,19 +313,5 @@ def _declares(view: GrammarView, elements: Sequence[Element]) -> bool:
 
 def _modifiers(view: GrammarView, element: Element) -> frozenset[str]:
     """Return the reserved words of which an element is a choice; they may be missing."""
-    words = view.words(element.item if isinstance(element, Repeat) else element)
+    words = view.words(item_of(element)[0])
     return words if words <= view.reserved else frozenset()
-
-
-def _is_inner(view: GrammarView, rule: Rule) -> bool:
-    """Return whether a rule is a token rule or part of a line."""
-    return rule.is_lexer or rule.name in view.rules.within_lines
-
-
-def _is_kind(view: GrammarView, element: Element) -> bool:
-    """Return whether an element is the type in front of a declared name, or ends with one."""
-    words = view.words(element)
-    if isinstance(element, Group) and not words:
-        return all(_is_kind(view, e) for a in element.alternatives for e in a.elements[-1:])
-    is_choice = isinstance(element, Reference) and element.name in view.rules.type_rules
-    return is_choice or bool(words and words <= view.types)

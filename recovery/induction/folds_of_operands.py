@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
-from itertools import pairwise, takewhile
+from itertools import takewhile
 
 from grammar.notation.addresses import Address, element_at, sequences
 from grammar.notation.edits import (
@@ -26,8 +26,7 @@ from grammar.notation.model import (
     walk,
 )
 from recovery.brackets import BRACKETS, CLOSING
-from recovery.forms.samples import samples_of
-from recovery.induction.grammar_view import GrammarView, sign_of
+from recovery.induction.grammar_view import GrammarView, Place, item_of, sign_of
 from recovery.induction.line_symbols import PREFIXES
 from recovery.induction.steps import InferredStep
 from recovery.tuning import RULE_SYMBOLS
@@ -62,15 +61,13 @@ def trailing(view: GrammarView) -> Iterator[InferredStep]:
         often = max(f[4] for f in alike)
         word = f"({' | '.join(sorted(every))})"
         text = f"{word}*" if often == math.inf else " ".join([f"{word}?"] * int(often))
-        edits = [
-            Replace(rule, (number, len(view.line(rule, number)) - len(run) + 1), text, len(run))
-            for rule, number, run, _, _ in alike
-            if view.source(rule, run) != text
-        ]
-        if len(every) > 1 and edits and every not in done:
+        if len(every) > 1 and every not in done:
             done.add(every)
-            title = f"{', '.join(sorted(every))} at the end of lines"
-            yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS * len(edits))
+            places = [
+                Place(rule, (number, len(view.line(rule, number)) - len(run) + 1), run)
+                for rule, number, run, _, _ in alike
+            ]
+            yield from view.alike(places, f"{', '.join(sorted(every))} at the end of lines", text)
 
 
 def signs(view: GrammarView) -> Iterator[InferredStep]:
@@ -146,32 +143,34 @@ def _is_led(view: GrammarView, ahead: Sequence[Element]) -> bool:
 
 
 def behind_signs(view: GrammarView) -> Iterator[InferredStep]:
-    """Yield the same operands behind a sign such as ``=`` wherever the lines of a rule have it."""
+    """Yield the same operands behind a sign such as ``=`` wherever the lines of a rule have it.
+
+    And the same words wherever there is a name or a type ahead of the sign.
+    """
+    found: dict[tuple[str, str], list[Place]] = defaultdict(list)
+    for rule, at, element, ahead in view.elements():
+        sign = ahead[-1] if ahead else None
+        if isinstance(sign, Literal) and sign.text not in (",", *BRACKETS, *CLOSING):
+            place = Place(rule.name, at, [element])
+            found[rule.name, sign.text].append(place)
+            is_named = any(view.is_name(e) or view.is_kind(e) for e in ahead[-2:-1])
+            if is_named and view.words(element) and view.words(element) <= view.reserved:
+                found["", sign.text].append(place)
     named = view.rules.matcher.rules_for((view.lexer.name_kind,))
-    for rule in view.line_rules:
-        found: dict[str, list[tuple[Address, Element]]] = defaultdict(list)
-        for address, sequence in sequences(rule):
-            for place, (sign, operand) in enumerate(pairwise(sequence.elements), 2):
-                if isinstance(sign, Literal) and sign.text not in (",", *BRACKETS, *CLOSING):
-                    found[sign.text].append(((*address, place), operand))
-        for text, operands in found.items():
-            texts = dict.fromkeys(view.source(rule.name, [o]) for _, o in operands)
-            if len(texts) < 2 or not all(_is_operand(view, o) for _, o in operands):
-                continue
-            widest = view.rules.widest
-            read = {name for _, o in operands for name in _any_of(view, o) or ("",)}
-            if widest and "" not in read and read & named:  # values alone are constants
-                form: str | None = widest
-            else:
-                shapes = [s for _, o in operands for s in samples_of(view.rules, [o])]
-                form = view.form(dict.fromkeys(shapes))
-            edits = tuple(
-                Replace(rule.name, at, form)
-                for at, operand in operands
-                if form and view.source(rule.name, [operand]) != form
-            )
-            title = f"the same operands behind {text} in {rule.name}"
-            yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
+    for (rule_name, sign_text), places in found.items():
+        contents = [place.elements[0] for place in places]
+        if not rule_name:
+            every = sorted(frozenset[str]().union(*map(view.words, contents)))
+            fewer = [p for p in places if len(view.words(p.elements[0])) < len(every)]
+            title = f"{', '.join(every)} behind {sign_text}"
+            yield from view.alike(fewer, title, f"({' | '.join(every)})")
+        elif all(_is_operand(view, e) for e in contents):
+            read = {name for e in contents for name in _any_of(view, e) or ("",)}
+            is_any = "" not in read and read & named  # values alone are constants
+            form = view.rules.widest if is_any else None
+            title = f"the same operands behind {sign_text} in {rule_name}"
+            if len({view.source(rule_name, [e]) for e in contents}) > 1:
+                yield from view.alike(places, title, form)
 
 
 def _any_of(view: GrammarView, element: Element) -> frozenset[str]:
@@ -200,22 +199,18 @@ def _is_operand(view: GrammarView, element: Element) -> bool:
 def any_operands(view: GrammarView) -> Iterator[InferredStep]:
     """Yield any operand in place of a choice of variables and values."""
     widest = view.rules.widest or ""
+    found: dict[str, list[Edit]] = defaultdict(list)
     for rule in view.line_rules:
-        edits: list[Edit] = []
         if _are_variables_and_values(view, rule.alternatives):
-            edits.append(Replace(rule.name, (1, 1), widest))
-            count = len(rule.alternatives)
-            edits += (RemoveAlternative(rule.name, n) for n in range(count, 1, -1))
-        else:
-            for address, sequence in sequences(rule):
-                for place, element in enumerate(sequence.elements, 1):
-                    often = element.operator if isinstance(element, Repeat) else ""
-                    group = element.item if isinstance(element, Repeat) else element
-                    if isinstance(group, Group) and _are_variables_and_values(
-                        view, group.alternatives
-                    ):
-                        edits.append(Replace(rule.name, (*address, place), f"{widest}{often}"))
-        title = f"any operand in {rule.name} in place of variables and values"
+            numbers = range(len(rule.alternatives), 1, -1)
+            removed = (RemoveAlternative(rule.name, number) for number in numbers)
+            found[rule.name] = [Replace(rule.name, (1, 1), widest), *removed]
+    for rule, at, element, _ in view.elements():
+        group, often = item_of(element)
+        if isinstance(group, Group) and _are_variables_and_values(view, group.alternatives):
+            found[rule.name].append(Replace(rule.name, at, f"{widest}{often}"))
+    for name, edits in found.items():
+        title = f"any operand in {name} in place of variables and values"
         yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS)
 
 

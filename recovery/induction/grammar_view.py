@@ -10,15 +10,29 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from itertools import zip_longest
+from typing import NamedTuple
 
+from grammar.notation.addresses import Address, sequences
+from grammar.notation.edits import Insert, Replace
 from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, Rule
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.loose import is_loose
 from recovery.forms.operand_rules import OperandRules
+from recovery.forms.samples import samples_of
 from recovery.forms.symbol_reader import SymbolReader
 from recovery.forms.symbols import Symbol
 from recovery.forms.writer import FormWriter
+from recovery.induction.steps import InferredStep
 from recovery.proposals.grammar_profile import GrammarProfile
+from recovery.tuning import RULE_SYMBOLS
+
+
+class Place(NamedTuple):
+    """Elements side by side in a rule, with the address of the first one."""
+
+    rule: str
+    at: Address
+    elements: Sequence[Element]
 
 
 class GrammarView:
@@ -60,7 +74,7 @@ class GrammarView:
     def ending_words(self, element: Element) -> frozenset[str]:
         """Return the words of such an element; empty if it is none."""
         words = frozenset[str]()
-        if isinstance(element, Repeat) and element.operator != "+":
+        if isinstance(element, Repeat) and is_optional(element):
             words = self.words(element.item)
         return frozenset() if self.lexer.name in words else words  # any name is no word
 
@@ -108,7 +122,7 @@ class GrammarView:
     def head(self, elements: Sequence[Element]) -> str:
         """Return the first word of a line, `kind` if it is of that kind; empty if there is none."""
         for element, following in zip_longest(elements, elements[1:]):
-            if isinstance(element, Repeat) and element.operator != "+":
+            if is_optional(element):
                 continue
             words = self.words(element)
             if words and words <= self.types and self.is_name(following):
@@ -121,6 +135,14 @@ class GrammarView:
         """Return whether an element is a name."""
         names = {self.lexer.name, self.rules.names}
         return isinstance(element, Reference) and element.name in names
+
+    def is_kind(self, element: Element) -> bool:
+        """Return whether an element is the type in front of a declared name, or ends with one."""
+        words = self.words(element)
+        if isinstance(element, Group) and not words:
+            return all(self.is_kind(e) for a in element.alternatives for e in a.elements[-1:])
+        is_choice = isinstance(element, Reference) and element.name in self.rules.type_rules
+        return is_choice or bool(words and words <= self.types)
 
     def words(self, element: Element) -> frozenset[str]:
         """Return the tokens of which an element is a choice; empty if it reads anything else."""
@@ -136,11 +158,44 @@ class GrammarView:
             case _:
                 return frozenset()
 
+    def elements(self) -> Iterator[tuple[Rule, Address, Element, Sequence[Element]]]:
+        """Yield all elements of the line rules: rule, address, element, and those ahead of it."""
+        for rule in self.line_rules:
+            for address, sequence in sequences(rule):
+                for place, element in enumerate(sequence.elements):
+                    yield rule, (*address, place + 1), element, sequence.elements[:place]
+
+    def alike(
+        self, places: Sequence[Place], title: str, form: str | None = None
+    ) -> Iterator[InferredStep]:
+        """Yield the same text for places that are alike: ``form``, or what reads all they have."""
+        sources = [self.source(rule, elements) for rule, _, elements in places]
+        if form is None and len({*sources}) > 1:
+            shapes = (s for _, _, elements in places for s in samples_of(self.rules, elements))
+            form = self.form(dict.fromkeys(shapes))
+        edits = tuple(
+            Replace(rule, at, form, len(elements)) if elements else Insert(rule, at, form)
+            for (rule, at, elements), source in zip(places, sources, strict=True)
+            if form and source != form
+        )
+        if edits:
+            yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
+
     def form(self, shapes: Iterable[tuple[Symbol, ...]]) -> str | None:
         """Return the form of distinct shapes; ``None`` if there is none, or only a loose one."""
         some = list(shapes)
         form = self.writer.form(some)
         return None if form and is_loose(form, some) else form
+
+
+def is_optional(element: Element) -> bool:
+    """Return whether an element may be missing."""
+    return isinstance(element, Repeat) and element.operator != "+"
+
+
+def item_of(element: Element) -> tuple[Element, str]:
+    """Return what an element repeats, or itself, and how often."""
+    return (element.item, element.operator) if isinstance(element, Repeat) else (element, "")
 
 
 def sign_of(element: Element | None) -> str:

@@ -7,9 +7,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 from grammar.notation.edits import Edit, from_data, to_data
 from grammar.notation.g4 import read_file
@@ -105,3 +108,31 @@ class InductionFolder:
         write_atomic(self.path / "grammar.g4", ledger.grammar.text.encode())
         struck_data = [[to_data(edit) for edit in edits] for edits in struck]
         write_atomic(self.path / "struck.json", json.dumps(struck_data).encode())
+
+
+def record_of(
+    ledger: InducedLedger,
+    settings: InductionSettings,
+    *,
+    seconds: float,
+    is_finished: bool,
+    target: Mapping[str, Any] | None,
+) -> dict[str, Any]:
+    """Return the record ``auto.json`` of the rounds so far, with the settings.
+
+    docs/automatic-recovery.md has its fields; others read them: none is changed, only added.
+
+    ``target`` compares the result with another grammar (`recovery.induction.target_comparison`).
+    """
+    record: dict[str, Any] = {
+        **asdict(settings),
+        "start_sha256": ledger.start.sha256,
+        "rounds": ledger.rounds,
+        "finished": is_finished,
+        "version": metadata.version("krl-workbench"),
+        "rules": len(ledger.grammar.parser_rules),
+        "seconds": round(seconds, 1),
+        "generated": datetime.now(UTC).isoformat(timespec="seconds"),
+        "grammar_sha256": ledger.grammar.sha256,
+    }
+    return record if target is None else {**record, "target": target}

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -254,6 +255,7 @@ class InferredKeywords:
         declared = {b for line in self.corpus.lines for a, b in pairwise(line) if a in names}
         return names | (declared - others)
 
+    @cached_property
     def prefixes(self) -> frozenset[str]:
         """Words that may be missing at the head of a line: most lines go on as others begin.
 

@@ -11,6 +11,7 @@ from grammar.notation.edits import AddAlternative, Insert, MakeOptional, Replace
 from grammar.notation.model import Element, Repeat
 from recovery.forms.samples import samples_of
 from recovery.forms.symbols import Symbol
+from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import WORD, LineSymbols
 from recovery.induction.steps import InferredStep
@@ -27,20 +28,16 @@ class LineEdits:
         at: LineSymbols,
         forms: SupportedForms,
         hosts: LineHosts,
-        prefixes: frozenset[str],
-        inner_words: frozenset[str],
+        keywords: InferredKeywords,
         block_words: frozenset[str],
     ) -> None:
-        """``prefixes`` are words that may be missing at the head of a line.
-
-        ``inner_words`` often follow another word, as those of types do. Lines that one of the
-        ``block_words`` begins are left to blocks.
-        """
+        """Lines that one of the ``block_words`` begins are left to blocks."""
         self.at = at
         self.forms = forms
         self.hosts = hosts
-        self._prefixes = prefixes
-        self._types = at.rules.type_words | inner_words
+        self._prefixes = keywords.prefixes
+        # words that often follow another one, as those of types do
+        self._types = at.rules.type_words | keywords.corpus.inner_words
         self._block_words = block_words
         self.symbols = [at.known_groups(symbols) for symbols in at.symbols]
 
@@ -72,7 +69,7 @@ class LineEdits:
         written_out = self.hosts.written_out
         kinds_of = sorted(self.at.profile.choices_of_lines | written_out)
         for number, line in enumerate(self.at.lines):
-            if line.is_enormous or line.keywords:
+            if line.keywords:
                 continue
             read = self.at.rules.matcher.rules_for(line.form.kinds)
             if line.form.kinds[-1] == self.at.lexer.line_kind:
@@ -95,9 +92,8 @@ class LineEdits:
     def _statements(self) -> Iterator[InferredStep]:
         """Forms of lines by their first word, or first sign where they begin with a name."""
         groups: dict[tuple[tuple[str, ...], str], list[int]] = defaultdict(list)
-        for number, line in enumerate(self.at.lines):
-            symbols = self.symbols[number]
-            if line.is_enormous or not symbols or self._opened_in_group(number):
+        for number, symbols in enumerate(self.symbols):
+            if not symbols or self._opened_in_group(number):
                 continue
             beside = [a.is_operand and b.is_operand for a, b in pairwise(symbols)]
             if symbols[0].is_operand and (any(beside) or len(symbols) == 1):

@@ -43,10 +43,9 @@ class LineSymbols:
         self.reader = SymbolReader(self.rules)
         self.profile = GrammarProfile(recognizer)
         self.tokens = [tuple(line.words()) for line in lines]
-        self.symbols = [
-            self._listed(() if line.is_enormous else self.reader.symbols(tokens))
-            for line, tokens in zip(lines, self.tokens, strict=True)
-        ]
+        #: The number and the tokens of each line, and the index of the one at which it fails.
+        self.failures = [(n, self.tokens[n], line.form.index) for n, line in enumerate(lines)]
+        self.symbols = [self._listed(self.reader.symbols(tokens)) for tokens in self.tokens]
 
     def _listed(self, symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
         """Return the symbols with reserved words as operands if they are in a list of names."""

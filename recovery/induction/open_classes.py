@@ -11,12 +11,11 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Set
 
-from grammar.notation.addresses import sequences
 from grammar.notation.edits import AddAlternative, Replace
-from grammar.notation.model import Group, Reference, Repeat, walk
+from grammar.notation.model import Group, Reference, walk
 from grammar.parser.lexer import Lexer
 from recovery.induction.corpus_lines import CorpusLines
-from recovery.induction.grammar_view import GrammarView
+from recovery.induction.grammar_view import GrammarView, item_of
 from recovery.induction.literals import blanks_between_quotes, has_blank, is_quoted
 from recovery.induction.steps import InferredStep
 from recovery.tuning import SEVERAL
@@ -39,15 +38,12 @@ def open_choices(view: GrammarView, rare: Set[str]) -> Iterator[InferredStep]:
     A word between operands says more.
     """
     found: dict[frozenset[str], list[Replace]] = defaultdict(list)
-    for rule in view.line_rules:
-        for address, sequence in sequences(rule):
-            for place, element in enumerate(sequence.elements, 1):
-                often = element.operator if isinstance(element, Repeat) else ""
-                group = element.item if isinstance(element, Repeat) else element
-                words = view.words(group) if isinstance(group, Group) else frozenset()
-                if len(words) > 1 and words <= view.reserved and words & rare:
-                    text = f"({' | '.join(sorted(words))} | {_name(view)}){often}"
-                    found[words].append(Replace(rule.name, (*address, place), text))
+    for rule, at, element, _ in view.elements():
+        group, often = item_of(element)
+        words = view.words(group) if isinstance(group, Group) else frozenset()
+        if len(words) > 1 and words <= view.reserved and words & rare:
+            text = f"({' | '.join(sorted(words))} | {_name(view)}){often}"
+            found[words].append(Replace(rule.name, at, text))
     for words, edits in found.items():
         yield InferredStep(f"any word beside {', '.join(sorted(words))}", tuple(edits), ())
 

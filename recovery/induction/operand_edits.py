@@ -49,8 +49,8 @@ class OperandEdits:
         """Words and signs between two operands or ahead of one, at each level there is."""
         infix: dict[str, list[int]] = defaultdict(list)
         prefix: dict[str, list[int]] = defaultdict(list)
-        for number, line in enumerate(self.at.lines):
-            if not line.is_enormous and 0 < line.form.index < len(self.at.tokens[number]) - 1:
+        for number, tokens, index in self.at.failures:
+            if 0 < index < len(tokens) - 1:
                 self._note_operator(number, infix, prefix)
         self.operator_lines = {n for ns in (*infix.values(), *prefix.values()) for n in ns}
         self.operators |= infix.keys() | prefix.keys()
@@ -82,7 +82,7 @@ class OperandEdits:
         self, number: int, infix: dict[str, list[int]], prefix: dict[str, list[int]]
     ) -> None:
         """Enter a line under the operator at which it seems to fail, if there is one."""
-        tokens, index = self.at.tokens[number], self.at.lines[number].form.index
+        _, tokens, index = self.at.failures[number]
         ahead = self.at.rules.matcher.sign(tokens[index - 1])
         is_sign = ahead is not None and self.at.shown(tokens[index - 1]) in PREFIXES
         if is_sign and self.at.begins_operand(tokens, index):
@@ -148,9 +148,8 @@ class OperandEdits:
         placed: dict[tuple[str, Address], dict[str, list[int]]]
         placed = defaultdict(lambda: defaultdict(list))
         lexer = self.at.lexer
-        for number, line in enumerate(self.at.lines):
-            tokens, index = self.at.tokens[number], line.form.index
-            kind = line.form.kinds[index] if index and not line.is_enormous else 0
+        for number, tokens, index in self.at.failures:
+            kind = self.at.lines[number].form.kinds[index] if index else 0
             is_word = kind > 0 and lexer.is_keyword(kind)
             if not is_word or lexer.name_kind not in self.at.expected(number):
                 continue
@@ -181,11 +180,10 @@ class OperandEdits:
         """Return reserved words in front of a name, if a rule has a choice of words and names."""
         found: dict[tuple[str, str], list[int]] = defaultdict(list)
         lexer, choices = self.at.lexer, self.at.rules.type_rules
-        for number, line in enumerate(self.at.lines):
-            tokens, index = self.at.tokens[number], line.form.index
-            if not index or line.is_enormous or index + 1 >= len(tokens):
+        for number, tokens, index in self.at.failures:
+            if not index or index + 1 >= len(tokens):
                 continue
-            kind = line.form.kinds[index]
+            kind = self.at.lines[number].form.kinds[index]
             is_ahead = tokens[index + 1] == (lexer.name_kind, None)
             if kind > 0 and lexer.is_keyword(kind) and is_ahead:
                 for rule in {rule for rule, _ in self._name_places(number)} & choices.keys():
@@ -210,9 +208,8 @@ class OperandEdits:
         """Return the contents of brackets that stand alone where an operand is possible."""
         found: dict[str, list[int]] = defaultdict(list)
         name = self.at.lexer.name_kind
-        for number, line in enumerate(self.at.lines):
-            tokens, index = self.at.tokens[number], line.form.index
-            if line.is_enormous or index >= len(tokens):
+        for number, tokens, index in self.at.failures:
+            if index >= len(tokens):
                 continue
             sign = self.at.rules.matcher.sign(tokens[index]) or ""
             rule = self.at.rules.bracketed.get(sign.strip("'"))
@@ -237,10 +234,8 @@ class OperandEdits:
         """
         found: dict[str, list[int]] = defaultdict(list)
         contents: dict[str, list[list[tuple[Symbol, ...]]]] = defaultdict(list)
-        for number, line in enumerate(self.at.lines):
-            tokens, index = self.at.tokens[number], line.form.index
-            is_behind = not line.is_enormous and 0 < index < len(tokens)
-            if is_behind and tokens[index - 1] == (self.at.lexer.name_kind, None):
+        for number, tokens, index in self.at.failures:
+            if 0 < index < len(tokens) and tokens[index - 1] == (self.at.lexer.name_kind, None):
                 close = self.at.reader.closer(tokens, index)
                 if close is not None:
                     inside = self.at.reader.symbols(tokens[index + 1 : close])

@@ -12,6 +12,7 @@ import re
 from collections.abc import Collection, Iterator, Sequence, Set
 from dataclasses import replace
 from functools import cached_property
+from itertools import chain
 from typing import Literal, get_args
 
 from grammar.notation.edits import (
@@ -33,20 +34,24 @@ from recovery.clustering.edit_trial import EditTrial, changed_rules, edited
 from recovery.forms.operand_rules import OperandRules
 from recovery.forms.symbol_reader import SymbolReader
 from recovery.forms.symbols import operands_of
-from recovery.induction.block_edits import blocks_of
+from recovery.induction.block_edits import BlockEdits, blocks_of
+from recovery.induction.bracket_edits import BracketEdits
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
 from recovery.induction.folding import folds_of, size
 from recovery.induction.grammar_view import GrammarView
-from recovery.induction.inference import inner_edits, outer_edits
 from recovery.induction.inferred_keywords import InferredKeywords, names_read
 from recovery.induction.language import CorpusFile, Language
+from recovery.induction.line_edits import LineEdits
+from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import LineSymbols
 from recovery.induction.list_lengths import bounded_lists
 from recovery.induction.literals import spaced_literals, split_literals
 from recovery.induction.names_rule import NAMES, softened, with_names, with_operands
 from recovery.induction.objections import EditReview
 from recovery.induction.open_classes import OPENINGS, rare_words
+from recovery.induction.operand_edits import OperandEdits
+from recovery.induction.row_structure import with_blocks
 from recovery.induction.shown_files import Failures, ShownFiles, reading
 from recovery.induction.steps import (
     AcceptedStep,
@@ -197,24 +202,22 @@ class Induction:
         """Return accepted and refused edits among those inferred from the failing lines."""
         recognizer = review.recognizer
         keywords = self._words(recognizer, failures, least)
-        if inner:
-            whole = self._with_tokens(failures, recognizer, least)
-            if whole is None and any(failures) and OperandRules(recognizer).widest is None:
-                whole = with_operands(self.grammar, recognizer.lexer)
-            if whole is not None:
-                return [whole], []
+        if inner and (whole := self._restated(failures, recognizer, keywords, least)):
+            return [whole], []
         table = FailingLines(self.shown.files, failures, keywords)
         known = table.occurrences
-        contexts = [finder.context(line.state) for line in known if line.state is not None]
+        contexts = [finder.context(line.state) for line in known]
         self._names = OperandRules(recognizer).names
         at = LineSymbols(recognizer, table.patterns, contexts)
         forms = SupportedForms(at, [line.origins for line in known], least[0])
         if inner:
-            found_edits = inner_edits(at, forms)
+            operands = OperandEdits(at, forms)
+            found_edits = chain(operands.edits(), BracketEdits(at, forms, operands).edits())
         else:
-            prefixes = keywords.prefixes()
-            blocks = blocks_of(keywords, recognizer, prefixes)
-            found_edits = outer_edits(at, forms, blocks, prefixes, keywords.corpus.inner_words)
+            hosts = LineHosts(at)
+            blocks = BlockEdits(at, forms, hosts, blocks_of(keywords, recognizer))
+            lines = LineEdits(at, forms, hosts, keywords, blocks.words)
+            found_edits = chain(blocks.edits(), lines.edits())
         trial = EditTrial(recognizer, table.patterns)
         # a rule of that name may be something else
         names = self._names or (None if NAMES in self.grammar.by_name else NAMES)
@@ -470,6 +473,23 @@ class Induction:
         return frozenset(network.rule[position] for position in begun if position not in entries)
 
     # --------------------------------------------------------------------------------------- tokens
+
+    def _restated(
+        self,
+        failures: Failures,
+        recognizer: Recognizer,
+        keywords: InferredKeywords,
+        least: tuple[int, int],
+    ) -> AcceptedStep | None:
+        """Return a step for what has to be there before lines are looked at; ``None`` without any.
+
+        These are tokens, a rule of operands, and blocks.
+        """
+        if step := self._with_tokens(failures, recognizer, least):
+            return step
+        if any(failures) and OperandRules(recognizer).widest is None:
+            return with_operands(self.grammar, recognizer.lexer)
+        return with_blocks(recognizer, keywords) if any(failures) else None
 
     def _with_tokens(
         self, failures: Failures, recognizer: Recognizer, least: tuple[int, int]

@@ -8,6 +8,7 @@ from random import Random
 from typing import TypedDict
 
 from grammar.notation.model import Grammar
+from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 from recovery.induction.language import KRL, CorpusFile, Language
@@ -35,7 +36,9 @@ class Comparison(TypedDict):
     the same for held-out files without a word of ``words_not_shown`` that the grown grammar lacks,
     too: no induction can read more. ``words_not_shown``: reserved words of the target in held-out
     files that no shown file has. ``sentences_rejected``: how many of its random sentences the
-    target rejects. ``negatives_accepted``: how many generated negatives it accepts.
+    target rejects; ``sentences_rejected_for_growth``: at how many of these the start, too, rejects
+    the first wrong line, so that the growth has added it. ``negatives_accepted``: how many
+    generated negatives it accepts.
     """
 
     shown: Share
@@ -44,23 +47,29 @@ class Comparison(TypedDict):
     held_known_words: Share
     words_not_shown: list[str]
     sentences_rejected: Share
+    sentences_rejected_for_growth: Share
     negatives_accepted: Share
 
 
 def compared(
+    start: Grammar,
     grown: Grammar,
     target: Grammar,
     shown: Sequence[CorpusFile],
     held: Sequence[CorpusFile],
     language: Language = KRL,
 ) -> Comparison:
-    """Return the comparison of a grown grammar with the target.
+    """Return the comparison of the grammar that ``start`` has grown to with the target.
 
     The random sentences and negatives have a fixed seed.
     """
     reader, reference = Recognizer(grown), Recognizer(target)
     sentences, speller, chance = Sentences(grown), Speller(grown), Random(_SEED)
     drawn = [speller.text(sentences.random(chance)) for _ in range(_SENTENCES)]
+    rejected = [text for text in drawn if not reference.accepts(text)]
+    at_start, at_target = (FailureFinder(Recognizer(grammar)) for grammar in (start, target))
+    wrong = [(text, next((f.line for f in at_target.find(text)), 0)) for text in rejected]
+    added = [line in {f.line for f in at_start.find(text)} for text, line in wrong]
     negatives = NegativeSet(language.negatives(_NEGATIVES, _SEED))
     wanted = [file for file in held if reference.accepts(file.text)]
     near, unknown = within_reach(reference, shown, wanted)
@@ -72,10 +81,8 @@ def compared(
         "held_within_reach": _parsed(reader, near),
         "held_known_words": _parsed(reader, known),
         "words_not_shown": unknown,
-        "sentences_rejected": {
-            "count": sum(not reference.accepts(text) for text in drawn),
-            "of": len(drawn),
-        },
+        "sentences_rejected": {"count": len(rejected), "of": len(drawn)},
+        "sentences_rejected_for_growth": {"count": sum(added), "of": len(drawn)},
         "negatives_accepted": {"count": len(negatives.accepted(reader)), "of": len(negatives)},
     }
 

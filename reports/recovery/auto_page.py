@@ -82,6 +82,7 @@ def _target(target: Record) -> list[Figure]:
         "held_known_words": "of those of them whose words some file shown has, or the start",
         "held_within_reach": "of those of them within reach: no neighbours that no file shown has",
         "sentences_rejected": f"of its random sentences {name} rejects",
+        "sentences_rejected_for_growth": "of them at a line that the start rejects too",
         "negatives_accepted": "of the negatives accepted",
     }
     found = []

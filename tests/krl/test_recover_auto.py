@@ -126,9 +126,13 @@ def test_what_the_target_rejects_is_counted(corpus: Path, monkeypatch: pytest.Mo
     """Most sentences of a wider grammar are none of a narrow target, which reads no file here."""
     monkeypatch.setattr(target_comparison, "_SENTENCES", 200)
     monkeypatch.setattr(target_comparison, "_NEGATIVES", 100)
-    found = compared(read_file(GRAMMAR), read_file(PRELIMINARY), KRL.files([corpus]), ())
+    start, grown = read_file(PRELIMINARY), read_file(GRAMMAR)
+    found = compared(start, grown, start, KRL.files([corpus]), ())
     assert {"count": 0, "of": 0} == found["shown"]
     assert 100 < found["sentences_rejected"]["count"] < 200
+    assert found["sentences_rejected"] == found["sentences_rejected_for_growth"]
+    nothing = compared(grown, grown, start, (), ())
+    assert {"count": 0, "of": 200} == nothing["sentences_rejected_for_growth"]
 
 
 def test_the_ledger_gives_the_grammar(out: Path) -> None:

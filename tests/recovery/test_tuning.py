@@ -13,7 +13,7 @@ from recovery import tuning
 
 FOLDER = Path(recovery.__file__).parent
 #: Modules that only report what was found.
-REPORTS = ("auto_record", "induced_ledger", "target_comparison")
+REPORTS = ("induced_ledger", "induction_folder", "target_comparison")
 HEURISTIC = [
     *(FOLDER / "survey" / name for name in ("suspected_keywords.py", "unreserved_keywords.py")),
     *(

@@ -15,8 +15,6 @@ from recovery.induction.folding import FOLDS, folds_of
 from recovery.induction.folds_of_declarations import (
     heads,
     kinds,
-    lists_of_two,
-    modes,
     types,
     undeclared_elsewhere,
     words_of_a_kind,
@@ -146,7 +144,6 @@ kindWord : INT | REAL ;
         ("MOVE DIM FRAME A = 1\n", True),
         ("FRAME A\n", True),
         ("INT A = B\n", True),
-        ("TURN A, B, C\n", True),
         ("INT A : SLOW\n", True),
         ("REAL A[1]\n", True),
         ("REAL A[1], B\n", False),
@@ -156,9 +153,9 @@ kindWord : INT | REAL ;
     ],
 )
 def test_what_stands_where_a_kind_does_is_of_the_kind(text: str, accepted: bool) -> None:
-    """Words ahead of declared names, operands and words behind a sign, lists of any length."""
+    """Words ahead of declared names, operands and words behind a sign."""
     grammar = read(_KINDS)
-    some = (words_of_a_kind, kinds, behind_signs, lists_of_two, modes, undeclared_elsewhere)
+    some = (words_of_a_kind, kinds, behind_signs, undeclared_elsewhere)
     while fold := next((f for k in some for f in _of(k, grammar)), None):
         grammar = apply(grammar, fold.edits)
     assert (False, accepted) == (

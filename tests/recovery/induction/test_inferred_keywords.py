@@ -77,7 +77,7 @@ def test_a_word_that_may_be_missing(toy: Grammar, second: str, found: set[str]) 
     """Several words follow what may be missing; a word ahead of names alone is a type of them."""
     lines = f"LINK MOVE {{0}}\nMOVE {{0}}\nLINK {second} := 1\n{second} := 1\nLINK B := 1\n"
     files = {o: lines.format(f"A{o}") for o in "abc"}
-    assert found == {"LINK"} & _keywords(toy, files).prefixes()
+    assert found == {"LINK"} & _keywords(toy, files).prefixes
 
 
 @pytest.mark.parametrize(("behind", "soft"), [("", True), (" 1", False)])

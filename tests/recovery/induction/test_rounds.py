@@ -20,6 +20,7 @@ from grammar.notation.edits import (
     Replace,
     apply,
 )
+from grammar.notation.foreign import read_foreign
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.notation.model import Grammar, Reference
@@ -520,13 +521,24 @@ def test_a_rule_that_a_form_calls_is_kept() -> None:
 
 
 def test_a_start_in_another_style_grows() -> None:
-    """Tokens of other names, flat rows, labelled alternatives: new words are reserved there too."""
-    start = read_file(Path(__file__).with_name("other_style.g4"))
-    text = "DEF A()\nWHILE X>1\nLIN P C_DIS\nENDWHILE\nHALT\nRETURN X\nEND\n"
-    files = tuple(CorpusFile(f"{o}/a.src", text, frozenset({o})) for o in ("A", "B", "C"))
-    recognizer = Recognizer(_grown(start, files).grammar)
-    texts = ("RETURN Q\n", "WHILE A==B\n", "ENDWHILE\n", "LIN\n", "HALT LIN\n")
-    assert [True, True, True, False, False] == [recognizer.accepts(text) for text in texts]
+    """Tokens of other names, labelled alternatives: new words are reserved there too.
+
+    Rows in any order become blocks, in which kinds of row are in the order that files show.
+    """
+    block = "WHILE X>1\nLIN P C_DIS\nENDWHILE\n"
+    ends = ("RETURN X\n", "RETURN X\nRETURN Y\nHALT\n", "HALT\nHALT\n")
+    texts = [
+        f"DEF A()\nDECL INT B\nDECL INT C\nX=1\n{block}LIN Q C_DIS\nX=2\n{end}END\n" for end in ends
+    ]
+    files = tuple(
+        CorpusFile(f"{o}/a.src", t, frozenset(o)) for o, t in zip("ABC", texts, strict=True)
+    )
+    inner = ("RETURN Z", "WHILE A==B\nENDWHILE", "ENDWHILE", "HALT LIN", "X=1\nDECL INT B")
+    more = (*(f"DEF B()\n{some}\nEND\n" for some in inner), "X=1\n", "DEF B()\n", texts[0] * 2)
+    for name in ("other_style.g4", "spelt_style.g4"):
+        start = read_file(Path(__file__).with_name(name), read_foreign)
+        recognizer = Recognizer(_grown(start, files).grammar)
+        assert [True, True, *[False] * 5, True] == [recognizer.accepts(text) for text in more]
 
 
 @pytest.mark.parametrize("end", ["NEWLINE", "NEWLINE+", "eol"])
