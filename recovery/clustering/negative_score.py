@@ -1,29 +1,15 @@
-"""Scoring an edit on negatives: how many programs it would wrongly accept.
-
-A program that is newly accepted must use the text that the edit writes, and so contains every token
-that this text always has. Therefore only a few of thousands of negatives have to be read.
-"""
+"""Scoring an edit on negatives: how many programs it would wrongly accept."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence, Set
+from collections.abc import Collection, Iterable, Iterator, Sequence, Set
 from functools import cache
 from typing import Protocol
 
-from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, Widen
-from grammar.notation.model import (
-    Alternative,
-    Element,
-    Grammar,
-    GrammarError,
-    Group,
-    Literal,
-    Reference,
-    Repeat,
-)
+from grammar.notation.edits import Edit
+from grammar.notation.model import Grammar, GrammarError
 from grammar.parser.recognizer import Recognizer
-from recovery.clustering.detours import rule_of
-from recovery.clustering.edit_trial import changed_rules, edited
+from recovery.clustering.edit_trial import edited
 from recovery.clustering.joint_trial import DetourReader, Path
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
@@ -86,18 +72,16 @@ class _Programs:
 
     def _begin(self) -> None:
         self._reader = DetourReader(self._recognizer.grammar, self._recognizer.network)
-        self._paths: dict[tuple[int, ...], Path] = {}
-        self._kinds: dict[frozenset[str], list[tuple[tuple[int, ...], frozenset[int]]]] = {}
-        self._having: dict[tuple[frozenset[str], frozenset[int]], dict[int, Path]] = {}
+        self._path_of: dict[tuple[int, ...], Path] = {}
+        self._paths: dict[frozenset[str], list[Path]] = {}
 
     def accepted(self, edits: Sequence[Edit]) -> frozenset[int]:
         """Return the numbers of the negatives that the edits accept."""
         found = self._read(edits)
         if found is not None:
-            return frozenset(number for number, _, failed in found if failed is None)
+            return frozenset(n for n, (_, failed) in enumerate(found) if failed is None)
         wider = edited(self._recognizer, edits)
-        tokens = wider and required_tokens(edits, self._recognizer.grammar, wider.lexer.kind_of)
-        accepted = set(self._negatives.accepted(wider, tokens)) if wider and tokens else set()
+        accepted = set(self._negatives.accepted(wider)) if wider else set()
         every = enumerate(self._negatives.negatives)
         return frozenset(number for number, negative in every if negative in accepted)
 
@@ -110,136 +94,44 @@ class _Programs:
         end = self._recognizer.lexer.line_kind
         return sum(
             failed is None or end in path.kinds[len(path.states) - 1 : failed]
-            for number, path, failed in found
+            for number, (path, failed) in enumerate(found)
             if number in among
         )
 
-    def _read(self, edits: Sequence[Edit]) -> list[tuple[int, Path, int | None]] | None:
-        """Return the negatives that may be read further, with their path and where they fail.
+    def _read(self, edits: Sequence[Edit]) -> list[tuple[Path, int | None]] | None:
+        """Return each negative as a path, with where it fails under the edits.
 
-        That is ``None`` if the edits are no detours, and none if they do not fit the grammar.
+        That is ``None`` if the edits are no detours, and nothing if they do not fit the grammar.
         """
         if self._reader.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
             self._reader.recognizer.release()
             self._begin()
-        reader = self._reader
         try:
-            detours = reader.detours(edits)
+            detours = self._reader.detours(edits)
         except GrammarError:
             return []
         if detours is None:
             return None
-        kind_of = {**self._recognizer.lexer.kind_of, **{w: reader.kind(w) for w in detours.words}}
-        paths: dict[int, Path] = {}
-        for tokens in required_tokens(edits, self._recognizer.grammar, kind_of):
-            key = detours.words, tokens
-            if key not in self._having:
-                self._having[key] = {
-                    number: self._path(kinds)
-                    for number, (kinds, met) in enumerate(self._cut(detours.words, kind_of))
-                    if tokens <= met
-                }
-            paths |= self._having[key]
-        failed = reader.read(detours, paths.values())
-        return [
-            (number, path, at) for (number, path), at in zip(paths.items(), failed, strict=True)
-        ]
+        if detours.words not in self._paths:
+            self._paths[detours.words] = list(map(self._path, self._kinds(detours.words)))
+        paths = self._paths[detours.words]
+        return list(zip(paths, self._reader.read(detours, paths), strict=True))
 
     def _path(self, kinds: tuple[int, ...]) -> Path:
-        if kinds not in self._paths:
-            self._paths[kinds] = self._reader.path(kinds)
-        return self._paths[kinds]
+        if kinds not in self._path_of:
+            self._path_of[kinds] = self._reader.path(kinds)
+        return self._path_of[kinds]
 
-    def _cut(
-        self, words: frozenset[str], kind_of: Mapping[str, int]
-    ) -> list[tuple[tuple[int, ...], frozenset[int]]]:
-        """Return the token kinds of each program, as list and as set, with the words reserved."""
-        if words not in self._kinds:
-            lexer = self._recognizer.lexer
-            for word in sorted(words):
-                lexer = lexer.with_keyword(word)
-            kind_here = [kind_of[name] for name in lexer.names]
-            programs = [
-                tuple(kind_here[kind] if kind > 0 else kind for kind in program)
-                for program in self._negatives.kinds(lexer)
-            ]
-            self._kinds[words] = [(program, frozenset(program)) for program in programs]
-        return self._kinds[words]
+    def _kinds(self, words: frozenset[str]) -> Iterator[tuple[int, ...]]:
+        """Yield the token kinds of each program, as the reader numbers them; ``words`` reserved."""
+        lexer, own = self._recognizer.lexer, len(self._recognizer.lexer.names)
+        for word in sorted(words):
+            lexer = lexer.with_keyword(word)
+        kind_here = [*range(own), *map(self._reader.kind, lexer.names[own:])]
+        for program in self._negatives.kinds(lexer):
+            yield tuple(kind_here[kind] if kind > 0 else kind for kind in program)
 
 
 @cache
 def _generated() -> tuple[Negative, ...]:
     return tuple(generate(count=GENERATED_NEGATIVES, seed=NEGATIVES_SEED))
-
-
-# ------------------------------------------------------------------------------ required tokens
-
-
-def required_tokens(
-    edits: Sequence[Edit], grammar: Grammar, kind_of: Mapping[str, int]
-) -> list[frozenset[int]]:
-    """Return, for each place the edits change, the token kinds that every new sentence has.
-
-    ``grammar`` is the one that is edited; ``kind_of`` includes the words they reserve.
-    """
-    tokens = _Tokens(grammar, kind_of, changed_rules(edits))
-    changes = [edit for edit in edits if not isinstance(edit, AddToken)]
-    return list(dict.fromkeys(_of_edit(edit, tokens) for edit in changes))
-
-
-def _of_edit(edit: Edit, tokens: _Tokens) -> frozenset[int]:
-    if not isinstance(edit, Insert | Widen | AddAlternative):
-        return frozenset()  # to leave something out needs no token
-    return tokens.of_text(edit.text)
-
-
-class _Tokens:
-    """The tokens that every sentence of a rule or a text has."""
-
-    def __init__(
-        self, grammar: Grammar, kind_of: Mapping[str, int], changed: Iterable[str]
-    ) -> None:
-        self._grammar = grammar
-        self._kind_of = kind_of
-        #: Nothing is required of a ``changed`` rule.
-        self._of_rule: dict[str, frozenset[int]] = dict.fromkeys(changed, frozenset())
-
-    def of_text(self, text: str) -> frozenset[int]:
-        """Return the tokens in every sentence of a text, the empty one left aside."""
-        alternatives = rule_of(text).alternatives
-        while (inner := _only(alternatives)) is not None:
-            alternatives = inner
-        return self._of_choice(alternatives)
-
-    def _of_choice(self, alternatives: Iterable[Alternative]) -> frozenset[int]:
-        found = (frozenset().union(*map(self._of, a.elements)) for a in alternatives)
-        return frozenset.intersection(*found)
-
-    def _of(self, element: Element) -> frozenset[int]:
-        match element:
-            case Repeat(item=item, operator=operator):
-                return self._of(item) if operator == "+" else frozenset()
-            case Group(alternatives=alternatives):
-                return self._of_choice(alternatives)
-            case Reference(name=name, is_token=False):
-                if name not in self._of_rule:
-                    self._of_rule[name] = frozenset()  # ends the recursion of recursive rules
-                    self._of_rule[name] = self._of_choice(self._grammar.by_name[name].alternatives)
-                return self._of_rule[name]
-            case Reference() | Literal():
-                return frozenset([self._kind_of[self._grammar.token_of(element)]])
-            case _:
-                return frozenset()
-
-
-def _only(alternatives: Sequence[Alternative]) -> tuple[Alternative, ...] | None:
-    """Return the content of a text that is one group, or one repeated or optional element."""
-    if len(alternatives) != 1 or len(alternatives[0].elements) != 1:
-        return None
-    match alternatives[0].elements[0]:
-        case Group(alternatives=inner):
-            return inner
-        case Repeat(item=item):
-            return (Alternative((item,), None, item.span),)
-        case _:
-            return None

@@ -122,7 +122,6 @@ class NegativeSet:
         ]
         self._lines = list(numbers)
         self._kinds: dict[Lexer, list[list[int]] | None] = {}
-        self._met: dict[Lexer, list[frozenset[int]]] = {}  # the tokens of each program
 
     def __len__(self) -> int:
         return len(self.negatives)
@@ -136,26 +135,16 @@ class NegativeSet:
         accepted = {negative.text for negative in self.accepted(recognizer)}
         return NegativeSet(n for n in self.negatives if n.text not in accepted)
 
-    def accepted(
-        self, recognizer: Recognizer, having: Sequence[frozenset[int]] = (frozenset(),)
-    ) -> list[Negative]:
-        """Return those that the recogniser accepts, in the order of the set.
-
-        Only negatives with all tokens of one of the sets ``having`` are tried.
-        """
+    def accepted(self, recognizer: Recognizer) -> list[Negative]:
+        """Return those that the recogniser accepts, in the order of the set."""
         kinds = self._cut(recognizer.lexer)
         if kinds is None:
             return [n for n in self.negatives if recognizer.accepts(n.text)]
-        met = self._met[recognizer.lexer]
         end = len(kinds)
         kinds = [*kinds, [EOF]]
         known: dict[tuple[Core, Tail, int], State | None] = {}
         found = []
-        for place, (negative, program) in enumerate(
-            zip(self.negatives, self._programs, strict=True)
-        ):
-            if not any(tokens <= met[place] for tokens in having):
-                continue
+        for negative, program in zip(self.negatives, self._programs, strict=True):
             state = recognizer.start
             for number in (*program, end):
                 key = (state.core, state.tail, number)
@@ -186,14 +175,8 @@ class NegativeSet:
         """Return the token kinds of each line; ``None`` if a token contains a line end."""
         if lexer not in self._kinds:
             if len(self._kinds) >= _MOST_LEXERS:
-                oldest = next(iter(self._kinds))
-                del self._kinds[oldest], self._met[oldest]
-            cut = self._kinds[lexer] = _kinds(lexer, self._lines)
-            lines = [frozenset(line) for line in cut or ()]
-            self._met[lexer] = [
-                frozenset[int]().union(*(lines[number] for number in program))
-                for program in (self._programs if cut else ())
-            ]
+                del self._kinds[next(iter(self._kinds))]
+            self._kinds[lexer] = _kinds(lexer, self._lines)
         return self._kinds[lexer]
 
 

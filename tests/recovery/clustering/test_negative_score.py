@@ -1,47 +1,14 @@
-"""Programs without the tokens an edit writes need not be read to know that it changes nothing."""
+"""Negatives that an edit accepts, or only reads further."""
 
-import pytest
-
-from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, MakeOptional, Widen
+from grammar.notation.edits import AddAlternative, Insert
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import edited
-from recovery.clustering.negative_score import negative_counter, required_tokens
+from recovery.clustering.negative_score import negative_counter
 from recovery.negatives.negatives import Negative, NegativeSet
 
 RECOGNIZER = Recognizer(read_file(GRAMMAR))
-
-
-def used(*edits: Edit) -> list[set[str]]:
-    wider = edited(RECOGNIZER, edits)
-    assert wider is not None
-    found = required_tokens(edits, RECOGNIZER.grammar, wider.lexer.kind_of)
-    return [{wider.lexer.names[kind] for kind in kinds} for kinds in found]
-
-
-@pytest.mark.parametrize(
-    ("text", "tokens"),
-    [
-        ("(',' NAME)*", {"COMMA", "NAME"}),
-        ("C_DIS?", {"C_DIS"}),
-        ("(WAIT | WAIT SEC) NAME", {"WAIT", "NAME"}),
-        ("(HALT WAIT?)*", {"HALT"}),
-        ("ifStatement", {"IF", "THEN", "ENDIF", "NEWLINE"}),
-        ("(HALT expression)?", {"HALT"}),
-        ("expression", set()),
-    ],
-)
-def test_what_all_that_is_newly_accepted_has(text: str, tokens: set[str]) -> None:
-    """What is optional within a text, or one of several, is not in all that the text reads."""
-    assert [tokens] == used(Insert("halt", (1, 2), text))
-
-
-def test_each_place_counts_for_itself() -> None:
-    """Of several edits one is enough to accept a program; leaving out needs no token at all."""
-    edits = (AddToken("BRAKES"), AddAlternative("brake", "BRAKES"), Widen("brake", (1, 1), "HALT"))
-    assert [{"BRAKES"}, {"HALT"}] == used(*edits)
-    assert [set[str]()] == used(MakeOptional("wait", (1, 2), 1))
 
 
 def test_no_program_is_missed() -> None:
