@@ -7,7 +7,7 @@ positions of one network, to which nothing in the grammar itself leads.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 
@@ -62,7 +62,8 @@ _NOTHING = RuleAutomaton(({},), frozenset([0]), (frozenset(),))
 class DetourNetwork:
     """The network of a grammar with the positions of the detours that were asked for."""
 
-    def __init__(self, grammar: Grammar, network: Network) -> None:
+    def __init__(self, grammar: Grammar, network: Network, kind: Callable[[str], int]) -> None:
+        """``kind`` numbers the words that no rule has."""
         self._grammar = grammar
         self._lexer = network.lexer
         self._shifts: list[Mapping[int, int]] = []
@@ -71,7 +72,7 @@ class DetourNetwork:
         self._rule: list[str] = []
         self._entry: dict[str, int] = {}
         self._places: list[frozenset[Address]] = []
-        self._kinds: dict[str, int] = {}  # of words that no rule has
+        self._kind = kind
         self._exact = cache(lambda name: exact_automata(grammar, grammar.by_name[name]))
         self._texts: dict[str, tuple[int, bool, bool, frozenset[str]]] = {}
         self._rests: dict[tuple[str, Address, bool], range] = {}
@@ -97,10 +98,6 @@ class DetourNetwork:
             ),
         )
         self.recognizer.most_ways = MOST_CONFIGURATIONS_TRIED
-
-    def kind(self, word: str) -> int:
-        """Return the token kind of a word that edits reserve."""
-        return self._kinds.setdefault(word, len(self._lexer.names) + len(self._kinds))
 
     # ------------------------------------------------------------------------------- edits
 
@@ -209,7 +206,7 @@ class DetourNetwork:
                     calls.append((self._entry[symbol], base + target))
                 else:
                     kind = self._lexer.kind_of.get(symbol)
-                    shifts[self.kind(symbol) if kind is None else kind] = base + target
+                    shifts[self._kind(symbol) if kind is None else kind] = base + target
             self._shifts.append(shifts)
             self._calls.append(calls)
             self._final.append(state in automaton.final)

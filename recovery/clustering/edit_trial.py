@@ -20,7 +20,7 @@ from grammar.parser.lexer import Lexer
 from grammar.parser.network import is_left_recursive, network_of, with_rule
 from grammar.parser.recognizer import Frames, Recognizer, State
 from recovery import tuning
-from recovery.clustering.joint_trial import DetourReader, Path
+from recovery.clustering.joint_trial import DetourReader
 from recovery.clustering.line_index import LineIndex
 from recovery.proposals.edit_site import LinePattern
 from support.gc_pause import gc_paused
@@ -87,7 +87,7 @@ class EditTrial:
         #: Of each trial the index at which a line fails, so that no line is read again.
         self._known: dict[tuple[Edit, ...], dict[int, int | None]] = defaultdict(dict)
         self._answers = 0
-        self._forget_paths()
+        self._reader = DetourReader(recognizer.grammar, recognizer.network)
 
     def relevant(self, edits: Sequence[Edit]) -> list[int]:
         """Return the lines that the edits might repair."""
@@ -137,43 +137,27 @@ class EditTrial:
         self, edits: Sequence[Edit], numbers: Iterable[int]
     ) -> Iterator[tuple[int, int | None]]:
         """Yield each line with the index at which it fails under the edits; none for a misfit."""
-        if self._reader.recognizer.configurations > tuning.MOST_CONFIGURATIONS_KEPT:
-            self._reader.recognizer.release()
-            self._forget_paths()
-        try:
-            detours = self._reader.detours(edits)
-        except GrammarError:
-            return
+        detours = self._reader.detours(edits)
         if detours is not None:
             chosen = list(numbers)
-            paths = [self._path(number, detours.words) for number in chosen]
-            for number, failed in zip(chosen, self._reader.read(detours, paths), strict=True):
+            texts = (self._text(number, detours.words) for number in chosen)
+            found = self._reader.read(detours, texts)
+            for number, (_, failed) in zip(chosen, found, strict=True):
                 begun = len(self._index.prefix[self.lines[number].form.before])
                 yield number, None if failed is None else failed - begun
         elif (wider := self.wider(edits)) is not None:
             for number, start, kinds in self.read_by(wider, edits, numbers):
                 yield number, wider.run(start, kinds)[1]
 
-    def _path(self, number: int, words: frozenset[str]) -> Path:
-        """Return the tokens that lead to a line and its own, read until the failure.
-
-        The ``words`` that the edits reserve are keywords in it.
-        """
+    def _text(self, number: int, words: frozenset[str]) -> tuple[int, ...]:
+        """Return the tokens that lead to a line and its own; reserved ``words`` are keywords."""
         line = self.lines[number]
-        meant = tuple((place, word) for place, word in line.keywords if word in words)
-        known = self._paths.get((number, meant))
-        if known is None:
-            prefix = self._index.prefix[line.form.before]
-            kinds = [*prefix, *line.form.kinds]
-            for place, word in meant:
+        prefix = self._index.prefix[line.form.before]
+        kinds = [*prefix, *line.form.kinds]
+        for place, word in line.keywords if words else ():
+            if word in words:
                 kinds[len(prefix) + place] = self._reader.kind(word)
-            known = self._paths[number, meant] = self._reader.path(kinds)
-        return known
-
-    def _forget_paths(self) -> None:
-        """Replace the reader by a new one."""
-        self._reader = DetourReader(self.recognizer.grammar, self.recognizer.network)
-        self._paths: dict[tuple[int, tuple[tuple[int, str], ...]], Path] = {}
+        return tuple(kinds)
 
     def is_ambiguous(self, edits: Sequence[Edit], among: Iterable[int]) -> bool:
         """Return whether one of the lines has two readings with the edits.

@@ -12,12 +12,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from grammar.notation.edits import Edit
-from grammar.notation.model import Grammar
+from grammar.notation.model import Grammar, GrammarError
 from grammar.parser.lazy_automaton import Configuration, Core
 from grammar.parser.network import Network, Reach
 from grammar.parser.recognizer import State
 from recovery.clustering.detours import DetourNetwork, Detours
-from recovery.tuning import MOST_CONFIGURATIONS_TRIED, MOST_STATES
+from recovery.tuning import MOST_CONFIGURATIONS_KEPT, MOST_CONFIGURATIONS_TRIED, MOST_STATES
 
 
 class _TooManyStates(Exception):
@@ -34,32 +34,46 @@ class Path:
 
 
 class DetourReader:
-    """Reads tokens under edits of one grammar."""
+    """Reads tokens under edits of one grammar; a network that has grown is replaced."""
 
     def __init__(self, grammar: Grammar, network: Network) -> None:
-        self._network = DetourNetwork(grammar, network)
+        self._given = grammar, network
+        self._kinds: dict[str, int] = {}
+        self._begin()
+
+    def _begin(self) -> None:
+        self._network = DetourNetwork(*self._given, self.kind)
         self.recognizer = self._network.recognizer
+        self._paths: dict[tuple[int, ...], Path] = {}
         self._indexed: set[Core] = set()
         self._cores_at: dict[int, set[Core]] = defaultdict(set)
         self._standing: dict[Reach, dict[int, list[tuple[int, ...]]]] = {}
 
     def kind(self, word: str) -> int:
-        """Return the token kind of a word that edits reserve."""
-        return self._network.kind(word)
+        """Return the token kind of a word that no rule has."""
+        return self._kinds.setdefault(word, len(self._given[1].lexer.names) + len(self._kinds))
 
     def detours(self, edits: Sequence[Edit]) -> Detours | None:
-        """Return the edits as detours, or ``None`` if they cannot be expressed as such.
+        """Return the edits as detours; ``None`` if they cannot be expressed as such, or do not fit.
 
-        Raises `GrammarError` if they do not fit the grammar.
+        They can be read until it is asked for others.
         """
-        return self._network.detours(edits)
+        if self.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
+            self.recognizer.release()
+            self._begin()
+        try:
+            return self._network.detours(edits)
+        except GrammarError:
+            return None
 
-    def read(self, detours: Detours, paths: Iterable[Path]) -> Iterator[int | None]:
-        """Yield how many tokens of each path can be read with the edits; ``None`` for all.
+    def read(
+        self, detours: Detours, texts: Iterable[tuple[int, ...]]
+    ) -> Iterator[tuple[Path, int | None]]:
+        """Yield each text with how many of its tokens can be read with the edits; ``None`` for all.
 
-        From a path with too many readings on, the edits let none be read further.
+        From a text with too many readings on, the edits let none be read further.
         """
-        paths = list(paths)
+        paths = list(map(self._path, texts))
         cores = frozenset[Core]().union(*(self._cores_at[position] for position in detours.at))
         for path in paths:
             furthest: int | None = len(path.states) - 1
@@ -68,7 +82,7 @@ class DetourReader:
                     furthest = self._read(detours, path, cores)
                 except _TooManyStates:
                     cores = frozenset()
-            yield furthest
+            yield path, furthest
 
     def _read(self, detours: Detours, path: Path, cores: frozenset[Core]) -> int | None:
         recognizer, kinds = self.recognizer, path.kinds
@@ -101,8 +115,11 @@ class DetourReader:
                 todo.append((state, number))
         return furthest
 
-    def path(self, kinds: Sequence[int]) -> Path:
+    def _path(self, kinds: tuple[int, ...]) -> Path:
         """Return how far tokens can be read without edits."""
+        known = self._paths.get(kinds)
+        if known is not None:
+            return known
         recognizer = self.recognizer
         state: State | None = recognizer.start
         states = []
@@ -118,7 +135,8 @@ class DetourReader:
                 for position in self._standing.get(reach) or self._stands(reach):
                     self._cores_at[position].add(core)
         self._indexed |= cores
-        return Path(kinds, states, cores)
+        path = self._paths[kinds] = Path(kinds, states, cores)
+        return path
 
     def _start(self, detours: Detours, core: Core, kind: int) -> Core | None:
         """Return the core after all detours from a core; ``None`` if it cannot read the token."""

@@ -7,13 +7,13 @@ from functools import cache
 from typing import Protocol
 
 from grammar.notation.edits import Edit
-from grammar.notation.model import Grammar, GrammarError
+from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import edited
 from recovery.clustering.joint_trial import DetourReader, Path
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
-from recovery.tuning import GENERATED_NEGATIVES, MOST_CONFIGURATIONS_KEPT, NEGATIVES_SEED
+from recovery.tuning import GENERATED_NEGATIVES, NEGATIVES_SEED
 
 #: Edits that compete with others for the same lines.
 Rivals = Collection[tuple[Edit, ...]]
@@ -68,12 +68,8 @@ class _Programs:
     def __init__(self, recognizer: Recognizer, negatives: NegativeSet) -> None:
         self._recognizer = recognizer
         self._negatives = negatives
-        self._begin()
-
-    def _begin(self) -> None:
-        self._reader = DetourReader(self._recognizer.grammar, self._recognizer.network)
-        self._path_of: dict[tuple[int, ...], Path] = {}
-        self._paths: dict[frozenset[str], list[Path]] = {}
+        self._reader = DetourReader(recognizer.grammar, recognizer.network)
+        self._texts: dict[frozenset[str], list[tuple[int, ...]]] = {}
 
     def accepted(self, edits: Sequence[Edit]) -> frozenset[int]:
         """Return the numbers of the negatives that the edits accept."""
@@ -99,28 +95,13 @@ class _Programs:
         )
 
     def _read(self, edits: Sequence[Edit]) -> list[tuple[Path, int | None]] | None:
-        """Return each negative as a path, with where it fails under the edits.
-
-        That is ``None`` if the edits are no detours, and nothing if they do not fit the grammar.
-        """
-        if self._reader.recognizer.configurations > MOST_CONFIGURATIONS_KEPT:
-            self._reader.recognizer.release()
-            self._begin()
-        try:
-            detours = self._reader.detours(edits)
-        except GrammarError:
-            return []
+        """Return each negative with where it fails; ``None`` if the edits are no detours."""
+        detours = self._reader.detours(edits)
         if detours is None:
             return None
-        if detours.words not in self._paths:
-            self._paths[detours.words] = list(map(self._path, self._kinds(detours.words)))
-        paths = self._paths[detours.words]
-        return list(zip(paths, self._reader.read(detours, paths), strict=True))
-
-    def _path(self, kinds: tuple[int, ...]) -> Path:
-        if kinds not in self._path_of:
-            self._path_of[kinds] = self._reader.path(kinds)
-        return self._path_of[kinds]
+        if detours.words not in self._texts:
+            self._texts[detours.words] = list(self._kinds(detours.words))
+        return list(self._reader.read(detours, self._texts[detours.words]))
 
     def _kinds(self, words: frozenset[str]) -> Iterator[tuple[int, ...]]:
         """Yield the token kinds of each program, as the reader numbers them; ``words`` reserved."""
