@@ -8,27 +8,12 @@ not pass.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from recovery.tuning import EXHAUSTIVE_ITEMS
 
 _T = TypeVar("_T")
-
-
-def without_loops(items: Sequence[_T], places: Sequence[Hashable]) -> list[_T]:
-    """Return the items without those between equal places; ``places[i]`` lies before item ``i``.
-
-    The result is not tested. It takes one pass, which shortens long sequences before the search.
-    """
-    last = {place: i for i, place in enumerate(places)}
-    out = []
-    i = 0
-    while i < len(items):
-        i = last[places[i]]
-        out.append(items[i])
-        i += 1
-    return out
 
 
 def minimized(items: Sequence[_T], passes: Callable[[list[_T]], bool]) -> list[_T]:

@@ -17,7 +17,7 @@ from grammar.parser.lexer import EOF
 from grammar.parser.recognizer import Recognizer, State
 from grammar.parser.shortest_paths import Paths
 from recovery.proposals.edit_site import LinePattern
-from recovery.reproducer.ddmin import minimized, without_loops
+from recovery.reproducer.ddmin import minimized
 from recovery.reproducer.rendering import AbstractToken, TokenRenderer
 from recovery.reproducer.same_failure import (
     FailureMode,
@@ -128,49 +128,7 @@ class Reducer:
                     body = body + self._spelling.frame(way[:cut], wider, name="end of line")
                     way = way[cut:]
                 beyond.append(self._spelling.frame(way, wider))
-            for bodies in (self._shortened(start, before, body, wider), [body]):
-                yield [
-                    before + chosen + after
-                    for chosen in bodies
-                    for after in [*self._endings(start, chosen), *beyond]
-                ]
-
-    def _shortened(
-        self,
-        start: State,
-        before: list[AbstractToken],
-        line: list[AbstractToken],
-        wider: Recognizer | None,
-    ) -> list[list[AbstractToken]]:
-        """Return the line with loops in its sequence of states removed, in up to two versions."""
-        kinds = [token.kind for token in line]
-        states = _states(self.recognizer, start, kinds)
-        if wider is not None:
-            outset, _ = wider.run(wider.start, kinds_in(wider, before))
-            more = _states(wider, outset, kinds_in(wider, line))
-            return [without_loops(line, list(zip(_places(states), _places(more), strict=True)))]
-        # tokens after a failure do not matter, but a line that can be continued shows more
-        found = [without_loops(line, _places(states))]
-        broken = self._broken(start, line)
-        if broken.gap:
-            head, tail = broken.index + 1, broken.index + broken.gap
-            behind = _states(self.recognizer, broken.state, kinds[tail:])
-            found.append(
-                without_loops(line[:head], _places(states[:head]))
-                + without_loops(line[tail:], _places(behind))
-            )
-        return found
-
-    def _broken(self, start: State, line: list[AbstractToken]) -> _FailurePoint:
-        kinds = [token.kind for token in line]
-        state, index = self.recognizer.run(start, kinds)
-        if index is None:  # the end of the file fails
-            return _FailurePoint(len(kinds), state, 0, start)
-        for gap in range(1, min(len(kinds) - index, LONGEST_GAP + 1)):
-            end, failed = self.recognizer.run(state, kinds[index + gap :])
-            if failed is None:
-                return _FailurePoint(index, state, gap, end)
-        return _FailurePoint(index, state, 0, start)
+            yield [before + body + after for after in [*self._endings(start, body), *beyond]]
 
     def _prefixes(self, line: LinePattern) -> Iterator[Sequence[int]]:
         """Yield tokens to places where a line can begin, and to where this one began."""
@@ -186,27 +144,20 @@ class Reducer:
 
     def _endings(self, start: State, line: list[AbstractToken]) -> list[list[AbstractToken]]:
         """Return how a program can continue after the line, as if it was absent or was read."""
-        broken, frames = self._broken(start, line), self.recognizer.frames
-        if broken.index == len(line):
+        kinds = [token.kind for token in line]
+        state, index = self.recognizer.run(start, kinds)
+        if index is None:  # the end of the file fails
             return [[]]
-        ways = {tuple(self._paths.completion(frames(s)))[:-1] for s in (start, broken.end)}
+        frames = self.recognizer.frames
+        ways = {tuple(self._paths.completion(frames(start)))[:-1]}
+        for gap in range(1, min(len(kinds) - index, LONGEST_GAP + 1)):
+            end, failed = self.recognizer.run(state, kinds[index + gap :])
+            if failed is None:
+                ways.add(tuple(self._paths.completion(frames(end)))[:-1])
+                break
         if line[-1].kind != self.recognizer.line_kind:  # the last line of a file
             ways |= {(self.recognizer.line_kind, *way) for way in ways}
         return [self._spelling.frame(way) for way in sorted(ways, key=lambda w: (len(w), w))]
-
-
-@dataclass(frozen=True, slots=True)
-class _FailurePoint:
-    """Where a line fails and in what state, and how it can be continued.
-
-    ``gap`` is the number of tokens to leave out for that, and ``end`` the state after the line. If
-    it cannot be continued, ``gap`` is 0 and ``end`` the state before the line.
-    """
-
-    index: int
-    state: State
-    gap: int
-    end: State
 
 
 def _readable(
@@ -222,23 +173,3 @@ def _readable(
         return None
     state, failed = wider.run(start, kinds_in(wider, line))
     return None if failed is not None and failed <= index else (line[:failed], state)
-
-
-def _states(
-    recognizer: Recognizer, state: State | None, kinds: Sequence[int]
-) -> list[State | None]:
-    """Return the state before each of the tokens; ``None`` after a failure."""
-    out: list[State | None] = []
-    for kind in kinds:
-        out.append(state)
-        state = None if state is None else recognizer.step(state, kind)
-    return out
-
-
-def _places(states: Sequence[State | None]) -> list[tuple[int, int] | None]:
-    """Return comparable keys for states, valid as long as the states exist.
-
-    Equal deep tails may be distinct objects; then a loop is missed, which is cheaper than comparing
-    them.
-    """
-    return [None if s is None else (id(s.core), id(s.tail)) for s in states]

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recovery.reproducer.ddmin import minimized, without_loops
+from recovery.reproducer.ddmin import minimized
 
 
 def test_stretches_go_that_the_test_does_not_need() -> None:
@@ -51,13 +51,3 @@ def test_the_result_passes_and_is_minimal(items: list[int], wanted: list[frozens
     left = minimized(items, passes)
     assert passes(left)
     assert [i for i in range(len(left)) if passes(left[:i] + left[i + 1 :])] == []
-
-
-def test_loops_go_in_one_pass() -> None:
-    """Of what leads from a place back to it nothing is left."""
-    assert without_loops("1+2+3;", [0, 1, 0, 1, 0, 1]) == ["3", ";"]
-
-
-def test_without_equal_places_nothing_goes() -> None:
-    """A line that never comes back to where it was stays as it is."""
-    assert without_loops("abc", [0, 1, 2]) == ["a", "b", "c"]
