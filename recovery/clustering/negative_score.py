@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence, Set
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from functools import cache
 from typing import Protocol
 
-from grammar.notation.edits import Edit
+from grammar.notation.edits import AddToken, Edit, Insert
 from grammar.notation.model import Grammar
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import edited
 from recovery.clustering.joint_trial import DetourReader, Path
+from recovery.forms.parts import parts, unwrapped
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.tuning import GENERATED_NEGATIVES, NEGATIVES_SEED
@@ -69,13 +70,15 @@ class _Programs:
         self._recognizer = recognizer
         self._negatives = negatives
         self._reader = DetourReader(recognizer.grammar, recognizer.network)
-        self._texts: dict[frozenset[str], list[tuple[int, ...]]] = {}
+        self._texts: dict[frozenset[str], list[tuple[tuple[int, ...], frozenset[int]]]] = {}
+        lexer = recognizer.lexer
+        self._kind_of = {lexer.spelled(kind): kind for kind in lexer.kind_of.values()}
 
     def accepted(self, edits: Sequence[Edit]) -> frozenset[int]:
         """Return the numbers of the negatives that the edits accept."""
         found = self._read(edits)
         if found is not None:
-            return frozenset(n for n, (_, failed) in enumerate(found) if failed is None)
+            return frozenset(number for number, _, failed in found if failed is None)
         wider = edited(self._recognizer, edits)
         accepted = set(self._negatives.accepted(wider)) if wider else set()
         every = enumerate(self._negatives.negatives)
@@ -90,18 +93,29 @@ class _Programs:
         end = self._recognizer.lexer.line_kind
         return sum(
             failed is None or end in path.kinds[len(path.states) - 1 : failed]
-            for number, (path, failed) in enumerate(found)
+            for number, path, failed in found
             if number in among
         )
 
-    def _read(self, edits: Sequence[Edit]) -> list[tuple[Path, int | None]] | None:
-        """Return each negative with where it fails; ``None`` if the edits are no detours."""
+    def _read(self, edits: Sequence[Edit]) -> list[tuple[int, Path, int | None]] | None:
+        """Return the negatives that may be accepted, with their numbers and where they fail.
+
+        That is ``None`` if the edits are no detours.
+        """
         detours = self._reader.detours(edits)
         if detours is None:
             return None
         if detours.words not in self._texts:
-            self._texts[detours.words] = list(self._kinds(detours.words))
-        return list(self._reader.read(detours, self._texts[detours.words]))
+            self._texts[detours.words] = [(k, frozenset(k)) for k in self._kinds(detours.words)]
+        kind_of = self._kind_of | {word: self._reader.kind(word) for word in detours.words}
+        needed = {_needed(edit, kind_of) for edit in edits if not isinstance(edit, AddToken)}
+        having = {
+            number: kinds
+            for number, (kinds, met) in enumerate(self._texts[detours.words])
+            if any(some <= met for some in needed)
+        }
+        found = self._reader.read(detours, having.values())
+        return [(number, *read) for number, read in zip(having, found, strict=True)]
 
     def _kinds(self, words: frozenset[str]) -> Iterator[tuple[int, ...]]:
         """Yield the token kinds of each program, as the reader numbers them; ``words`` reserved."""
@@ -111,6 +125,14 @@ class _Programs:
         kind_here = [*range(own), *map(self._reader.kind, lexer.names[own:])]
         for program in self._negatives.kinds(lexer):
             yield tuple(kind_here[kind] if kind > 0 else kind for kind in program)
+
+
+def _needed(edit: Edit, kind_of: Mapping[str, int]) -> frozenset[int]:
+    """Return the tokens that an edit writes plainly: whatever it lets be read has them."""
+    pieces = parts(getattr(edit, "text", ""))
+    if isinstance(edit, Insert) and len(pieces) == 1:
+        pieces = parts(unwrapped(pieces[0]))
+    return frozenset() if "|" in pieces else frozenset(kind_of[p] for p in pieces if p in kind_of)
 
 
 @cache
