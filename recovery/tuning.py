@@ -147,9 +147,6 @@ UNLIKELY_COST = 8
 #: breadth that counts. Measured: other proposals with 2, other proposals with 1.
 REPETITION_COST = 4
 REPETITION_BREADTH_PART = 3
-#: Steps of an alternative ahead of the failure to a rule that was not begun there. Measured: the
-#: same with 1.
-NOT_BEGUN_COST = 2
 #: Elements that an edit leaves out, tokens that it inserts ahead of a failure. Measured: 54
 #: clusters with 1.
 MOST_SKIPPED = 3

@@ -24,7 +24,6 @@ class EarlierSiteFinder:
         """Yield the sites of a line at tokens before the failing one."""
         yield from self._taken_for_something_else(reading)
         for start in range(max(0, reading.failed - tuning.MOST_SKIPPED), reading.failed):
-            yield from self._alternatives(reading, start)
             yield from self._parts(reading, start)
 
     def _taken_for_something_else(self, reading: LineReading) -> Iterator[EditSite]:
@@ -48,22 +47,6 @@ class EarlierSiteFinder:
             rank = self._profile.width(rule) + tuning.SITE_COST
             for end in reading.resuming(beyond, start, reading.failed + 1):
                 yield EditSite("alternative", rule, (1, 1), reading.words[start:end], rank)
-
-    def _alternatives(self, reading: LineReading, start: int) -> Iterator[EditSite]:
-        """Yield alternatives of rules that can begin at a token."""
-        recognizer, network = self._recognizer, self._recognizer.network
-        begun, state = reading.rules_begun(), reading.before(start)
-        for position, stack in reading.configurations(start):
-            if network.rule[position] in self._profile.line_ends:
-                continue
-            for entry, back in network.calls[position]:
-                beyond = recognizer.at((back, stack), state)
-                called = network.rule[entry]
-                rank = self._profile.width(called) + tuning.SITE_COST
-                if (called, (back, *stack.positions())) not in begun:
-                    rank += tuning.NOT_BEGUN_COST
-                for end in reading.reading_on(beyond, start, reading.failed):
-                    yield EditSite("alternative", called, (1, 1), reading.words[start:end], rank)
 
     def _parts(self, reading: LineReading, start: int) -> Iterator[EditSite]:
         """Yield insertions; the tokens that were read may be the end of another reading's part."""

@@ -27,30 +27,13 @@ class LineSiteFinder:
         self._profile = profile
         self._phraser = phraser
 
-    def find(self, reading: LineReading, *, is_new: bool) -> Iterator[EditSite | RankedEdits]:
-        """Yield the sites of a line as a whole; ``is_new`` if its first token could be read."""
-        if is_new:
-            yield from self._as_new_line(reading)
+    def find(self, reading: LineReading) -> Iterator[EditSite | RankedEdits]:
+        """Yield the sites of a line as a whole."""
         line_kind, kinds = self._recognizer.line_kind, [kind for kind, _ in reading.words]
         if kinds == [line_kind]:
             yield from self._blank_line(reading.before(0))
         elif kinds[-1] == line_kind:
             yield from self._as_lines(reading)
-
-    def _as_new_line(self, reading: LineReading) -> Iterator[EditSite]:
-        """Yield the line as an alternative of a rule behind which its line end can be read."""
-        before, (*words, end) = reading.before(0), reading.words
-        network = self._recognizer.network
-        for position, stack in reading.configurations(0):
-            for entry, back in network.calls[position]:
-                rule = network.rule[entry]
-                beyond = self._recognizer.at((back, stack), before)
-                goes_on = self._recognizer.run(beyond, end[:1])[1] is None
-                if goes_on and self._profile.has_choice(rule):
-                    rank = self._profile.width(rule) + SITE_COST + UNLIKELY_COST
-                    yield EditSite("alternative", rule, (1, 1), tuple(words), rank)
-
-    # ------------------------------------------------------------------------ where it stands
 
     def _blank_line(self, before: State) -> Iterator[RankedEdits]:
         """Yield edits that accept line ends."""

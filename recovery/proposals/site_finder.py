@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from grammar.notation.addresses import Address
-from grammar.notation.edits import AddAlternative, Insert, MakeOptional
+from grammar.notation.edits import AddAlternative, MakeOptional
 from grammar.notation.model import Alternative, Element, Group, Reference, Repeat
 from grammar.parser.lazy_automaton import Configuration
 from recovery import tuning
@@ -56,7 +56,7 @@ class EditSiteFinder:
                 for place in places_of(self._recognizer, site):
                     yield from self._omissions(reading, start, site, place)
             yield from self._earlier.find(reading)
-        yield from self._lines.find(reading, is_new=0 not in starts)
+        yield from self._lines.find(reading)
 
     def block_rules(self, line: LinePattern) -> list[str]:
         """Return the rules for lines or blocks that can begin where a line begins."""
@@ -70,10 +70,9 @@ class EditSiteFinder:
         rule = self._recognizer.network.rule[site[0]]
         if rule in self._profile.line_ends:
             return
-        words = reading.words
         for place in places_of(self._recognizer, site):
             yield from self._parts(reading, start, site, place)
-            yield from self._blocks(rule, place, words[start:])
+            yield from self._blocks(rule, place, reading.words[start:])
             yield from self._replacements(reading, start, site, place)
             yield from self._omissions(reading, start, site, place)
 
@@ -137,31 +136,22 @@ class EditSiteFinder:
         return tuple(signs)
 
     def _blocks(self, rule: str, place: Address, words: Sequence[Token]) -> Iterator[RankedEdits]:
-        """Yield a known block that this line begins and that is not expected at this place."""
+        """Yield known blocks that the line begins as alternatives of the choice that comes next."""
         if any(keyword for _, keyword in words):
             return
-        blocks = self._phraser.matcher.multi_line_rules([kind for kind, _ in words])
-        for block in blocks:
-            yield from self._as_alternative(rule, place, block)
-            if rule != self._grammar.start and self._profile.is_at_start(rule, place):
-                continue
-            rank = self._profile.width(rule) + tuning.SITE_COST + tuning.UNLIKELY_COST
-            for text in (f"{block}*", f"({block} {self._recognizer.lexer.line_end}*)*"):
-                yield rank, (Insert(rule, place, text),)
-
-    def _as_alternative(self, rule: str, place: Address, block: str) -> Iterator[RankedEdits]:
-        """Yield a block as one more alternative of the choice that comes next."""
         profile = self._profile
         elements = profile.sequence(rule, place[:-1]).elements
         following = elements[place[-1] - 1] if place[-1] <= len(elements) else None
         inner = following.item if isinstance(following, Repeat) else following
-        if not isinstance(inner, Reference) or inner.is_token or inner.name == block:
+        choice = inner and _called(inner)
+        if not choice or not profile.has_choice(choice):
             return
-        symbols = tuple(filter(None, (block, profile.closing(inner.name))))
-        if profile.has_choice(inner.name) and not self._similarity.is_foreign(inner.name, symbols):
-            rank = profile.width(inner.name) + tuning.SITE_COST
-            rank += self._similarity.dissimilarity(inner.name, symbols)
-            yield rank, (AddAlternative(inner.name, " ".join(symbols)),)
+        for block in self._phraser.matcher.multi_line_rules([kind for kind, _ in words]):
+            symbols = tuple(filter(None, (block, profile.closing(choice))))
+            if choice != block and not self._similarity.is_foreign(choice, symbols):
+                rank = profile.width(choice) + tuning.SITE_COST
+                rank += self._similarity.dissimilarity(choice, symbols)
+                yield rank, (AddAlternative(choice, " ".join(symbols)),)
 
     # ----------------------------------------------------------- something else in its place
 
