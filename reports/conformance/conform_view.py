@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from reports.rendering.number_format import Figure, counted, moment, percent, share
+from reports.rendering.number_format import Figure, counted, percent, share
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
-from reports.rendering.sanitizing import shown, shown_texts
+from reports.rendering.sanitizing import shown
 
 _RUN = "each case on every executor and robot, against its rule and against one another"
 _RECORDED = "what a controller did in each case, against its rule"
@@ -17,10 +17,11 @@ Json = dict[str, Any]
 
 
 def conform_view(record: Mapping[str, Any]) -> Json:
-    """Return what the template shows of a record; see `conform_page.write_conformance_page`.
+    """Return what the template shows beside a record of `conform_page.write_conformance_page`.
 
-    ``subtitle`` says what was compared with what. ``fault`` is a planted fault. ``left`` are cases
-    without a result, with the reason why.
+    ``subtitle`` says what was compared with what. ``left`` are cases without a result, with the
+    reason why; ``rows`` are the suites with a cell for each column, ``None`` if it did not run
+    there.
     """
     suites = records(record, "suites")
     columns = _columns(suites)
@@ -34,48 +35,35 @@ def conform_view(record: Mapping[str, Any]) -> Json:
         headline = f"Recording of {recording}: {headline[0].lower()}{headline[1:]}"
     left = cut_off or texts(record, "not_recorded")
     return {
+        "record": record,
         "headline": shown(headline, 200) if total else "No case was run",
         "subtitle": _RECORDED if recording else _RUN,
-        "selection": shown(" ".join(texts(record, "selection")), 200),
-        **shown_texts(record, version=40, fault=200),
         "left": (
             f"{counted(len(left), 'case')} {'not run' if cut_off else 'not recorded'}",
             [shown(name, 80) for name in left[:_MOST_LEFT]],
         ),
         "is_green": bool(total) and not failed and not cut_off,
-        "made": shown(moment(text(record, "generated")), 60),
         "figures": _figures(record),
         "columns": columns,
-        "rows": [_row(suite, columns) for suite in suites],
-        "uncovered": [shown(rule, 20) for rule in texts(nested(record, "coverage"), "uncovered")],
-        "has_history": len(records(record, "history")) > 1,
+        "rows": [(suite, _cells(suite, columns)) for suite in suites],
     }
 
 
 def _columns(suites: list[Record]) -> tuple[tuple[str, str], ...]:
     """Return the executors and robots that occur; the column of the front end is last."""
-    found = {
-        (shown(text(cell, "executor"), 40), shown(text(cell, "robot"), 40))
-        for suite in suites
-        for cell in records(suite, "cells")
-    }
+    found = {_place(cell) for suite in suites for cell in records(suite, "cells")}
     order = {name: place for place, name in enumerate(("tree", "vm", "native"))}
     robots = {name: place for place, name in enumerate(("none", "kinematic", "mujoco"))}
     return tuple(sorted(found, key=lambda c: (robots.get(c[1], 9), order.get(c[0], 9), c)))
 
 
-def _row(suite: Record, columns: tuple[tuple[str, str], ...]) -> Json:
-    """Return a suite with a cell for each column, ``None`` if it did not run there."""
-    cells = {}
-    for cell in records(suite, "cells"):
-        place = (shown(text(cell, "executor"), 40), shown(text(cell, "robot"), 40))
-        cells[place] = _cell(nested(cell, "verdicts"))
-    return {
-        "suite": shown(text(suite, "name"), 80),
-        "cases": count(suite, "cases"),
-        "negative": count(suite, "negative"),
-        "cells": [cells.get(place) for place in columns],
-    }
+def _place(cell: Record) -> tuple[str, str]:
+    return shown(text(cell, "executor"), 40), shown(text(cell, "robot"), 40)
+
+
+def _cells(suite: Record, columns: tuple[tuple[str, str], ...]) -> list[Json | None]:
+    cells = {_place(cell): _cell(nested(cell, "verdicts")) for cell in records(suite, "cells")}
+    return [cells.get(place) for place in columns]
 
 
 def _cell(verdicts: Record) -> Json:

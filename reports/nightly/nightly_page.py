@@ -113,12 +113,13 @@ def _view(record: Mapping[str, Any], runs: Sequence[Record], out: Path) -> Json:
     """
     before = nested(runs[-2], "bench") if len(runs) > 1 else {}
     return {
-        **shown_texts(record, date=40),
+        "record": record,
+        "has_ended": has_ended,
+        "own_folder": _own_folder,
         "headline": shown(headline(record)),
         "failures": [_failure(one) for one in records(record, "failures")[:_MAX_CHANGES]],
         "figures": [*_figures(record)],
         "changes": [(tone(one), shown(one)) for one in texts(record, "changes")[:_MAX_CHANGES]],
-        "steps": [_step(name, step) for name, step in nested(record, "steps").items()],
         "bench": [
             (
                 _in_words(name),
@@ -202,15 +203,7 @@ def _change(value: float, before: Any) -> str:
     return f"{100 * (value - before) / abs(before):+.1f} %"
 
 
-def _step(name: str, step: Any) -> Json:
-    fields: Record = step if isinstance(step, Mapping) else {}
-    status, page = text(fields, "status"), text(fields, "page")
-    # our own links are relative ones without a scheme
+def _own_folder(page: str) -> str:
+    """Return a link if it is a relative one without a scheme, as ours are, else ""."""
     is_ours = page.replace("/", "").replace(".", "").replace("-", "").isalnum()
-    return {
-        "name": shown(name, 60),
-        "status": shown(status, 300),
-        "is_fine": has_ended(status),
-        "seconds": number(fields, "seconds"),
-        "page": page if is_ours and not page.startswith("/") else "",
-    }
+    return page if is_ours and not page.startswith("/") else ""

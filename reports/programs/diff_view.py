@@ -6,7 +6,7 @@ from typing import Any
 
 from reports.rendering.number_format import Figure, counted
 from reports.rendering.record_fields import Record, count, nested, records, text, texts
-from reports.rendering.sanitizing import shown, shown_texts
+from reports.rendering.sanitizing import shown
 
 _MOST = 2_000
 #: Angles below this are rounding errors.
@@ -16,7 +16,7 @@ _SUMMED = frozenset("X Y Z A B C A1 A2 A3 A4 A5 A6".split())
 
 
 def diff_view(record: Record) -> Mapping[str, Any]:
-    """Return what the template shows of a record of ``krl diff``; every field may be absent.
+    """Return what the template shows beside a record of ``krl diff``; every field may be absent.
 
     Lists are limited; ``left_out`` has the number of omitted rows of each.
     """
@@ -36,15 +36,16 @@ def diff_view(record: Record) -> Mapping[str, Any]:
         ),
     ]
     rows = {"routines": routines, "points": points, "data": data}
-    names = records(record, "names")
     return {
-        **shown_texts(record, old=400, new=400),
+        "record": record,
         "figures": figures,
-        "names": [(shown(text(one, "old")), shown(text(one, "new"))) for one in names],
         "files": [*_files(files)][:_MOST],
-        "routines": [_routine(one) for one in routines[:_MOST]],
-        "points": [_point(one) for one in far[:_MOST]],
-        "data": [_datum(one) for one in data[:_MOST]],
+        "routines": [
+            (one, shown(routine_name(one)), shown(routine_words(one)), _hunks(one))
+            for one in routines[:_MOST]
+        ],
+        "points": [(one, *_measures(one), *_rest(one)) for one in far[:_MOST]],
+        "data": data[:_MOST],
         "left_out": {key: max(0, len(listed) - _MOST) for key, listed in rows.items()},
     }
 
@@ -65,10 +66,6 @@ def _files(files: Record) -> Iterator[str]:
     for one in moved:
         if folders[tuple(texts(one, "folders"))] == 1:
             yield f"{shown(text(one, 'new'))} was {shown(text(one, 'old'))}"
-
-
-def _place(one: Record) -> str:
-    return shown(f"{text(one, 'file')}:{count(one, 'line')}")
 
 
 # ---------------------------------------------------------------------------------------- routines
@@ -96,21 +93,15 @@ def routine_words(one: Record) -> str:
     return "changed"
 
 
-def _routine(one: Record) -> Mapping[str, Any]:
-    """Return a routine with its hunks: the place of each, and lines marked "-" or "+"."""
+def _hunks(one: Record) -> list[tuple[str, list[tuple[str, str]]]]:
+    """Return the hunks of a routine: the place of each, and lines marked "-" or "+"."""
     hunks = []
     for hunk in records(one, "hunks"):
         sides = [(mark, texts(hunk, key)) for key, mark in (("old", "-"), ("new", "+"))]
         lines = [(mark, shown(line)) for mark, side in sides for line in side]
         was, now = count(hunk, "old_line"), count(hunk, "new_line")
         hunks.append((f"line {was}" if was == now else f"line {was}, now {now}", lines))
-    return {
-        "place": _place(one),
-        "name": shown(routine_name(one)),
-        "said": shown(routine_words(one)),
-        "hunks": hunks,
-        "statements": sum(len(lines) for _, lines in hunks),
-    }
+    return hunks
 
 
 # ------------------------------------------------------------------------------- points and data
@@ -143,6 +134,7 @@ def _changes(one: Record) -> Iterator[str]:
 
 
 def _measures(one: Record) -> tuple[str, str, str]:
+    """Return the distance in mm and the angles in degrees; empty if there is none."""
     values = [one.get(key) for key in ("distance_mm", "angle_deg", "axis_deg")]
     least = (0.0, _SMALLEST_ANGLE, 0.0)
     distance, angle, axis = (
@@ -178,18 +170,8 @@ def _far(one: Record) -> float:
     return float(value) if isinstance(value, int | float) else -1.0
 
 
-def _point(one: Record) -> Mapping[str, Any]:
-    """Return a point with its change; distance in mm, angles in degrees, empty if there is none."""
+def _rest(one: Record) -> tuple[str, str]:
+    """Return the frames of a point, and what else changed in words."""
     is_measured = text(one, "kind") == "changed" and any(_measures(one))
     said = ", ".join(_others(one)) if is_measured else point_words(one)
-    return {
-        "place": _place(one),
-        **shown_texts(one, name=400),
-        "said": shown(said),
-        **dict(zip(("distance", "angle", "axis"), _measures(one), strict=True)),
-        "frames": shown(_frames(one)),
-    }
-
-
-def _datum(one: Record) -> Mapping[str, Any]:
-    return {"place": _place(one), **shown_texts(one, name=400, kind=20, old=400, new=400)}
+    return shown(_frames(one)), shown(said)

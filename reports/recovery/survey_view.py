@@ -1,8 +1,6 @@
-"""The static parts of the survey page: headline, figures, origins, skipped files, copies.
+"""What the survey page shows beside its record: state, figures, clusters, skipped files.
 
 The clusters of a grammar are in `reports.recovery.survey_section`.
-
-All texts can be printed as they are: untrusted ones have passed through `printable`.
 """
 
 from collections.abc import Iterator, Sequence
@@ -10,17 +8,9 @@ from typing import Any
 
 from reports.recovery.skipped_files import skipped_files
 from reports.recovery.survey_section import section
-from reports.rendering.number_format import Figure, counted, moment, percent, share, size
-from reports.rendering.record_fields import (
-    Record,
-    count,
-    nested,
-    number,
-    optional_count,
-    records,
-    text,
-)
-from reports.rendering.sanitizing import shown, shown_texts
+from reports.rendering.number_format import Figure, counted, percent, share, size
+from reports.rendering.record_fields import Record, count, nested, number, optional_count, records
+from reports.rendering.sanitizing import made_by
 
 _MAX_CLUSTERS = 2000
 _MAX_PATHS = 200
@@ -29,29 +19,21 @@ Json = dict[str, Any]
 
 
 def survey_view(record: Record) -> Json:
-    """Return what the template shows; ``state`` is no-files, complete, unclustered or clusters.
+    """Return what the template shows beside the record.
 
-    ``start`` is the section of the restrictive start if that was surveyed too; ``pending`` says
-    what is still being computed and is empty when nothing is.
+    ``state`` is no-files, complete, unclustered or clusters. ``start`` is the section of the
+    restrictive start if that was surveyed too.
     """
     clusters = _shown(record)
     begun = nested(record, "start")
-    version = text(record, "version")
-    made = [version and f"krl {version}", moment(text(record, "generated"))]
     return {
         "state": _state(record, clusters),
-        **shown_texts(record, pending=400, grammar=400, grammar_note=400),
-        "grammar_hash": shown(text(record, "grammar_sha256"), 64),
-        "made": " · ".join(shown(part, 80) for part in made if part),
-        "files": count(record, "files"),
-        "parsed": count(record, "parsed"),
+        "record": record,
+        "made": made_by(record),
         "figures": [*_figures(record, clusters)],
         "section": section(record, clusters),
         "start": section(begun, _shown(begun), "start-") if begun else None,
-        "origins": _origins(record),
         "skipped": [*skipped_files(record, _MAX_PATHS)],
-        "skipped_total": len(records(record, "skipped")),
-        "copies": _copies(record),
     }
 
 
@@ -102,33 +84,3 @@ def _figures(record: Record, clusters: Sequence[Record]) -> Iterator[Figure]:
         f"{seconds:,.1f}" if seconds >= 0.1 else f"{seconds:.2g}",
         f"{size(octets / seconds)}/s" if seconds > 0 else "",
     )
-
-
-def _origins(record: Record) -> list[Json]:
-    rows = []
-    for origin in records(record, "origins"):
-        files, parsed = count(origin, "files"), count(origin, "parsed")
-        failed = optional_count(origin, "failed")
-        rows.append(
-            {
-                **shown_texts(origin, name=200),
-                "files": files,
-                "parsed": parsed,
-                "failed": files - parsed if failed is None else failed,
-                "share": share(parsed, files),
-                "rate": percent(parsed, files),
-            }
-        )
-    return rows
-
-
-def _copies(record: Record) -> Json:
-    """Return files with the content of an earlier one, as pairs of paths.
-
-    ``more`` is the number of pairs that are not listed.
-    """
-    copies = records(record, "copies")
-    pairs = [
-        (shown(text(copy, "path")), shown(text(copy, "same_as"))) for copy in copies[:_MAX_PATHS]
-    ]
-    return {"total": len(copies), "pairs": pairs, "more": len(copies) - len(pairs)}

@@ -3,13 +3,29 @@
 from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import Any, Final
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
+from reports.rendering import number_format, record_fields
 from reports.rendering.embedding import embedded_json, inline_source, script_hash
-from reports.rendering.number_format import counted
+from reports.rendering.sanitizing import shown
+
+#: What templates read records and format figures with, by their own names.
+_FILTERS: Final = (
+    record_fields.count,
+    record_fields.nested,
+    record_fields.number,
+    record_fields.records,
+    record_fields.text,
+    record_fields.texts,
+    number_format.counted,
+    number_format.moment,
+    number_format.percent,
+    number_format.share,
+    shown,
+)
 
 
 def render(
@@ -50,8 +66,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    environment.filters["counted"] = counted
-    environment.filters["thousands"] = "{:,}".format
+    environment.filters.update({each.__name__: each for each in _FILTERS}, thousands="{:,}".format)
     return environment
 
 

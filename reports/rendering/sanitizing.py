@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from reports.rendering.embedding import printable
-from reports.rendering.number_format import clip
+from reports.rendering.number_format import clip, moment
 from reports.rendering.record_fields import Record, text
 
 _MOST_ITEMS = 2_000
@@ -20,6 +20,13 @@ def shown(foreign: str, width: int = 400) -> str:
 def shown_texts(record: Record, **widths: int) -> dict[str, str]:
     """Return texts of a record by their names, each as `shown` in its width."""
     return {name: shown(text(record, name), width) for name, width in widths.items()}
+
+
+def made_by(record: Record) -> str:
+    """Return the version that made a record and when."""
+    version = text(record, "version")
+    parts = [version and f"krl {version}", moment(text(record, "generated"))]
+    return " · ".join(shown(part, 80) for part in parts if part)
 
 
 def plain(value: Any, width: int = 400, depth: int = 0) -> Any:
