@@ -92,10 +92,10 @@ def _refusals(case: Case, seen: Observation) -> Iterator[Check]:
             actual = f"{found.code} {found.message}"
             check = Check(found.file, found.line, "the program is loaded", "unmet", actual)
             check = _resting_on(case.said_of(found.file, found.line, behind=True), case, check)
-            yield replace(check, is_sure=check.is_sure and not _is_told_early(found, case))
+            yield replace(check, is_sure=check.is_sure and not is_told_early(found, case))
 
 
-def _is_told_early(found: Finding, case: Case) -> bool:
+def is_told_early(found: Finding, case: Case) -> bool:
     """Whether a case expects a message when it runs, and no rule says that it is not told before.
 
     Those have numbers below 2000.

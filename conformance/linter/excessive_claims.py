@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cache
 from typing import Final
 
+from conformance.evaluation.evaluator import is_told_early
 from conformance.evaluation.execution import FRONT, Setup, observe
 from conformance.linter.unconfirmed_constructs import doubts
 from conformance.suite.case import Case
@@ -99,12 +100,17 @@ def _untimed(clause: Rule | Clause, one: Expectation, when: When) -> str:
 def _of_refused(case: Case) -> Iterator[str]:
     """Yield that a program which the check refuses is expected to run: a controller refuses it.
 
-    One that is only to be parsed, too. Machine data are written by the controller itself.
+    One that is only to be parsed, too. Machine data are written by the controller itself. What may
+    be told while the program runs has to be expected, or rest on what fails no case.
     """
     if case.phase == "check" or case.expects_syntax_error or not case.may_fail:
         return
     for one in observe(replace(case, phase="check"), Setup(FRONT, "none")).findings:
-        is_refused = one.severity == "error" and not one.may_come_late(one.code)
+        if one.may_come_late(one.code):
+            said = case.said_of(one.file, one.line, behind=True)
+            is_refused = any(map(case.is_sure, said)) and not is_told_early(one, case)
+        else:
+            is_refused = one.severity == "error"
         if is_refused and one.file.lower() != "$machine.dat":
             yield f"{one.file}:{one.line}: {one.code} refuses what a controller has to take"
 

@@ -116,6 +116,15 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
             "parse\nDEF good()\n  NOWHERE() ;> accepted",
             "KRL102 refuses what a controller has to take",
         ),
+        *(
+            ("control/good.src", GOOD, citing(rule, expected).replace("HALT", statement), part)
+            for rule, statement, expected, part in (
+                ("CTL-01", "$IN[1] = TRUE\n  HALT", "runs 1", "KSS1388 refuses what a controller"),
+                ("SCO-11.a", "$IN[1] = TRUE", "fault 1388", ""),
+                ("CTL-01", "$VEL.CP = 99.0", "runs 1", "KSS1422 refuses what a controller"),
+                ("MOT-05.d", "$VEL.CP = 99.0", "runs 1", ""),
+            )
+        ),
         ("control/good.src", "HALT", "$OUT['Ha'] = TRUE", "good.src:5: only TYP-04.b allows it"),
         ("control/good.src", "  HALT", "STRUC S INT N, L[2]\n  HALT", "only TYP-08.e allows it"),
         ("control/good.src", "  HALT", "STRUC S CHAR A[2], B[3], INT N\n  HALT", ""),
