@@ -31,14 +31,7 @@ from grammar.check.project.project_check import (
     recheck,
 )
 from grammar.check.project.report import CheckReport, is_large, together
-from grammar.check.project.result_cache import (
-    ProjectResult,
-    known_files,
-    known_records,
-    read_result,
-    result_record,
-    state_of,
-)
+from grammar.check.project.result_cache import ProjectResult, recalled, state_of, stored
 from grammar.check.project.suppression_comments import apply_suppressions
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.semantics.project_grouping import projects_of
@@ -207,7 +200,11 @@ class _Project:
 
     def start(self, number: int, pool: StickyPool, store: ResultStore) -> None:
         """Have the project checked; with several processes this waits until it has been read."""
-        known = self._known = known_files(store, self.places, self.contents, self.options)
+        known = self._known = {
+            index: one
+            for index, place in enumerate(self.places)
+            if (one := recalled(store, place, self._state_of(index), KnownFile))
+        }
         new = {index: one for index, one in enumerate(self.contents) if index not in known}
         size = sum(len(content.data) for content in new.values())
         if pool.count == 1 or size < _LARGE:
@@ -237,8 +234,14 @@ class _Project:
 
     def keep(self, result: ProjectResult, store: ResultStore) -> None:
         """Keep what was found, and what is now known of files."""
-        store.put(known_records(self.places, self._files, self._known, self.options))
-        store.put([(self.place, result_record(result, self.state))])
+        new = (i for i, file in enumerate(self._files) if file is not self._known.get(i))
+        store.put((self.places[i], stored(self._state_of(i), self._files[i])) for i in new)
+        # what is recalled of a project comes from the cache as a whole
+        whole = replace(result, kept=frozenset(result.sizes))
+        store.put([(self.place, stored(self.state, whole))])
+
+    def _state_of(self, index: int) -> str:
+        return state_of([self.contents[index]], self.options)
 
     def result(self) -> ProjectResult:
         """Wait for the findings and return them."""
@@ -248,7 +251,7 @@ class _Project:
             checked: dict[int, FileResult] = {}
             for part in self._parts:
                 checked |= part.result()
-            self._files = completed(self.contents, self._read, self._known, checked, self._needs)
+            self._files = completed(self._read, self._known, checked, self._needs)
         looked = [known.checked for known in self._files]
         diagnostics = found_in_project(self.contents, self._files)
         by_path: dict[str, list[Diagnostic]] = {content.path: [] for content in self.contents}
@@ -323,8 +326,7 @@ def _run(
 
     for number, members in enumerate(projects):
         project = _Project(members, options)
-        record = store.get_record(project.place)
-        known = None if record is None else read_result(record, project.state)
+        known = recalled(store, project.place, project.state, ProjectResult)
         if known is not None:
             waiting.append(known)
         else:

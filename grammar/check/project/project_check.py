@@ -39,7 +39,7 @@ from grammar.semantics.symbols import ModuleTable
 from grammar.syntax import ast
 from grammar.syntax.build import builder
 from grammar.syntax.source import Source, names_in_text
-from support.files.decode import decode, digest
+from support.files.decode import decode
 from support.gc_pause import gc_paused
 from support.lazy_dataclass import dataclass
 
@@ -118,12 +118,8 @@ class FileResult:
 
 @dataclass(frozen=True, slots=True)
 class KnownFile:
-    """A file that was checked before: the results of reading and checking, and its needs then.
+    """A file that was checked before: the results of reading and checking, and its needs then."""
 
-    ``digest`` is that of its content.
-    """
-
-    digest: str
     read: FileResult
     checked: FileResult
     needs: Needs
@@ -222,7 +218,7 @@ def recheck(
     needed = needs(contents, looked, options)
     stale = {i: contents[i] for i, one in known.items() if not one.stands(needed[i])}
     checked = check_part(project, [one.path for one in contents], looked, stale, options)
-    return completed(contents, looked, known, checked, needed)
+    return completed(looked, known, checked, needed)
 
 
 def needs(
@@ -244,7 +240,6 @@ def needs(
 
 
 def completed(
-    contents: Sequence[Content],
     looked: Mapping[int, FileResult],
     known: Mapping[int, KnownFile],
     checked: Mapping[int, FileResult],
@@ -252,14 +247,13 @@ def completed(
 ) -> list[KnownFile]:
     """Return the current results of all files of a project."""
     found = []
-    for index, content in enumerate(contents):
+    for index, needs_now in enumerate(needed):
         before = known.get(index)
-        result = checked.get(index) or (before.checked if before else looked[index])
-        key = before.digest if before else digest(content.data)
-        if before is not None and result is before.checked and before.stands(needed[index]):
+        if before and index not in checked and before.stands(needs_now):
             found.append(before)
         else:
-            found.append(KnownFile(key, looked[index], result, needed[index]))
+            result = checked.get(index) or (before.checked if before else looked[index])
+            found.append(KnownFile(looked[index], result, needs_now))
     return found
 
 
