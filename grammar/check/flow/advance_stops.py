@@ -10,7 +10,6 @@ All of this is valid, so it is reported as notes, and only on request.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from grammar.check.analysis.accesses import address_of
 from grammar.check.analysis.constant_folding import constant
@@ -38,23 +37,15 @@ def check(context: Context) -> Iterator[Diagnostic]:
         yield from _Routine(context, routine).notes()
 
 
-def with_stops(context: Context, known: Summaries | None) -> Summaries | None:
-    """Return the summaries of a file, with the routines that stop the advance run before they move.
+def add_stops(context: Context, made: Summaries) -> None:
+    """Add to the summaries of a file the routines that stop the advance run before they move.
 
     A blend is lost before a call of such a routine.
     """
-    if context.module.suffix == ".sub":
-        return known
-    clauses: list[Clause] = []
-    suspects: list[Suspect] = []
-    for routine in context.routines:
+    for routine in context.routines if context.module.suffix != ".sub" else ():
         notes = _Routine(context, routine)
-        clauses += notes.clauses()
-        suspects += notes.suspects()
-    if not clauses and not suspects:
-        return known
-    known = known or Summaries(context.source.path)
-    return replace(known, clauses=(*known.clauses, *clauses), suspects=(*known.suspects, *suspects))
+        made.clauses.update(dict.fromkeys(notes.clauses()))
+        made.suspects.extend(notes.suspects())
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from dataclasses import field, replace
 from typing import Any
 
 from grammar.check.analysis.accesses import Use, accesses
@@ -48,20 +49,18 @@ class Effects:
     those of its routines.
     """
 
-    interrupts: tuple[Place, ...] = ()
-    declared: frozenset[str] = frozenset()
-    switched_on: frozenset[str] = frozenset()
-    switches: tuple[Place, ...] = ()
-    outputs: tuple[Place, ...] = ()
-    reset: frozenset[str] = frozenset()
-    waits: tuple[tuple[Place, frozenset[str]], ...] = ()
-    changed: frozenset[str] = frozenset()
-    valueless: tuple[Place, ...] = ()
-    used: frozenset[tuple[str, str]] = frozenset()
-    summaries: Summaries | None = None
+    interrupts: list[Place] = field(default_factory=list)
+    declared: set[str] = field(default_factory=set)
+    switched_on: set[str] = field(default_factory=set)
+    switches: list[Place] = field(default_factory=list)
+    outputs: dict[str, Place] = field(default_factory=dict)
+    reset: set[str] = field(default_factory=set)
+    waits: list[tuple[Place, frozenset[str]]] = field(default_factory=list)
+    changed: set[str] = field(default_factory=set)
+    valueless: list[Place] = field(default_factory=list)
+    used: set[tuple[str, str]] = field(default_factory=set)
+    summaries: Summaries = field(default_factory=Summaries)
 
-
-NO_EFFECTS = Effects()
 
 _OPERATORS: Mapping[str, Callable[[bool, bool], bool]] = {
     "AND": operator.and_,
@@ -87,8 +86,8 @@ def effects_of_unread(words: frozenset[str]) -> Effects:
     """Return the possible effects of unreadable text with these words; `REST` can do anything."""
     if REST in words:
         words |= {"INTERRUPT"} | _PROGRAMS_OWN
-    any_ = frozenset({""} if "INTERRUPT" in words else ())
-    return Effects(declared=any_, switched_on=any_, reset=words, changed=words)
+    any_ = {""} if "INTERRUPT" in words else set[str]()
+    return Effects(declared=any_, switched_on=set(any_), reset=set(words), changed=set(words))
 
 
 class _Collector:
@@ -96,15 +95,7 @@ class _Collector:
 
     def __init__(self, context: Context) -> None:
         self._context = context
-        unread = effects_of_unread(context.module.words or frozenset())
-        self._interrupts: list[Place] = []
-        self._declared = set(unread.declared)
-        self._on = set(unread.switched_on)
-        self._switches: list[Place] = []
-        self._outputs: dict[str, Place] = {}
-        self._reset = set(unread.reset)
-        self._waits: list[tuple[Place, frozenset[str]]] = []
-        self._changed = set(unread.changed)
+        self._made = effects_of_unread(context.module.words or frozenset())
         self._summaries = SummaryCollector(context)
 
     def collect(self) -> Effects:
@@ -118,20 +109,9 @@ class _Collector:
             self._summaries.routine(routine)
         for node in context.typed_nodes[ast.Call] if context.routines else ():
             self._call(node)
-        valueless = tuple(self._valueless())
-        return Effects(
-            tuple(self._interrupts),
-            frozenset(self._declared),
-            frozenset(self._on),
-            tuple(self._switches),
-            tuple(self._outputs.values()),
-            frozenset(self._reset),
-            tuple(self._waits),
-            frozenset(self._changed),
-            valueless,
-            frozenset(self._used()),
-            self._summaries.made(),
-        )
+        self._made.valueless.extend(self._valueless())
+        self._made.used.update(self._used())
+        return replace(self._made, summaries=self._summaries.made)
 
     def _valueless(self) -> Iterator[Place]:
         """Yield the variables of a data list without an initial value that only files here can set.
@@ -154,7 +134,7 @@ class _Collector:
             elif isinstance(item, ast.Assignment) and (root := root_variable(item.target)):
                 declared.pop(root.name.key, None)
             elif isinstance(item, ast.Importation) and (root := root_variable(item.source)):
-                self._changed.add(root.name.key)
+                self._made.changed.add(root.name.key)
         for key, name in declared.items():
             symbol = context.table.table.find(Space.VALUE, key)
             is_own = symbol is not None and symbol.access is not Access.GLOBAL
@@ -178,14 +158,14 @@ class _Collector:
         for access in accesses(self._context, node):
             if access.use is not Use.READ:
                 key = self._key(access.place) if access.place is not None else access.key
-                self._changed.add(key)
+                self._made.changed.add(key)
 
     def interrupt(self, node: ast.InterruptDeclaration) -> None:
         """Record an interrupt with its possible number, and the effects of its action."""
         known = integer_of(self._context, node.number)
-        self._declared.add(_number(known))
+        self._made.declared.add(_number(known))
         if known is not None and 1 <= known <= 128:  # others are reported there
-            self._interrupts.append(self._place(node.number, str(known)))
+            self._made.interrupts.append(self._place(node.number, str(known)))
         self._later(node)
 
     def trigger(self, node: ast.Trigger) -> None:
@@ -196,18 +176,18 @@ class _Collector:
         """Which interrupts are switched, and which of them on."""
         known = None if node.number is None else integer_of(self._context, node.number)
         if node.action in ("ON", "ENABLE"):
-            self._on.add(_number(known))
+            self._made.switched_on.add(_number(known))
         if node.number is not None and known is not None and is_priority(known):
-            self._switches.append(self._place(node.number, str(known)))
+            self._made.switches.append(self._place(node.number, str(known)))
 
     def assignment(self, node: ast.Assignment) -> None:
         """Record what is set and what is reset."""
         key = self._key(node.target).replace("$OUT_C", "$OUT")
         if constant(self._context, node.value) is not True:
-            self._reset.add(key)
-        elif key.startswith("$OUT[") and key not in self._outputs:
+            self._made.reset.add(key)
+        elif key.startswith("$OUT[") and key not in self._made.outputs:
             shown = self._context.source.text[slice(*node.target.span)]
-            self._outputs[key] = self._place(node, f"{key}\t{shown}")
+            self._made.outputs[key] = self._place(node, f"{key}\t{shown}")
 
     def values(self, nodes: Iterable[ast.Assignment]) -> None:
         """Visit the assignments after WITH."""
@@ -219,7 +199,7 @@ class _Collector:
             self.assignment(node.action)
             return
         for access in accesses(self._context, node):
-            self._reset.add(self._key(access.place) if access.place else access.name.key)
+            self._made.reset.add(self._key(access.place) if access.place else access.name.key)
 
     # --------------------------------------------------------------------------- keys
 
@@ -248,7 +228,7 @@ class _Collector:
         keys: set[str] = set()
         if self._with_flags_off(node.condition, keys) is False and keys:
             shown = ", ".join(sorted(keys))
-            self._waits.append((self._place(node.condition, shown), frozenset(keys)))
+            self._made.waits.append((self._place(node.condition, shown), frozenset(keys)))
 
     def _with_flags_off(self, node: ast.Expression, keys: set[str]) -> bool | None:
         """Return the value of a condition while all flags are FALSE; add its flags to ``keys``."""
@@ -284,7 +264,7 @@ class _Collector:
     def _call(self, node: ast.Call) -> None:
         for argument in node.arguments:
             if argument is not None:
-                self._reset.add(self._key(argument))  # PULSE, and what a routine may do with it
+                self._made.reset.add(self._key(argument))  # PULSE, and what a routine may do with it
         self._summaries.call(node)
 
 
@@ -321,16 +301,16 @@ _RULES: Mapping[type[Any], Callable[[_Collector, Any], None]] = {
 def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
     """Yield the findings about effects that depend on several files."""
     files = list(found)
-    declared = frozenset[str]().union(*(one.declared for one in files))
-    switched_on = frozenset[str]().union(*(one.switched_on for one in files))
+    declared = set[str]().union(*(one.declared for one in files))
+    switched_on = set[str]().union(*(one.switched_on for one in files))
     switches = [place for one in files for place in one.switches]
     undeclared = [] if "" in declared else list(_undeclared(switches, declared, switched_on))
     yield from undeclared
     meant = {name for one in undeclared if one.fix for name in one.fix.names}
-    reset = frozenset[str]().union(*(one.reset for one in files))
-    changed = frozenset[str]().union(*(one.changed for one in files))
-    yield from of_summaries([one.summaries for one in files if one.summaries])
-    used = frozenset[tuple[str, str]]().union(*(one.used for one in files))
+    reset = set[str]().union(*(one.reset for one in files))
+    changed = set[str]().union(*(one.changed for one in files))
+    yield from of_summaries([one.summaries for one in files])
+    used = set[tuple[str, str]]().union(*(one.used for one in files))
     for one in files:
         for place in one.valueless if REST not in changed else ():
             key = place.what.upper()
@@ -340,7 +320,7 @@ def of_project(found: Iterable[Effects]) -> Iterator[Diagnostic]:
         if "" not in switched_on:
             yield from _never_on(one.interrupts, switched_on | meant)
         if "$OUT" not in reset:
-            yield from _never_reset(one.outputs, reset)
+            yield from _never_reset(one.outputs.values(), reset)
         for place, keys in one.waits:
             if not (keys | {key.partition("[")[0] for key in keys}) & changed:
                 message = f"no file at hand sets {place.what}, so this may wait for ever"
@@ -359,7 +339,7 @@ def _undeclared(
             yield diagnose("interrupt-undeclared", place.path, place.region, message, fix=fix)
 
 
-def _never_on(declared: Iterable[Place], switched_on: frozenset[str]) -> Iterator[Diagnostic]:
+def _never_on(declared: Iterable[Place], switched_on: Set[str]) -> Iterator[Diagnostic]:
     reported = set()
     for place in declared:
         if place.what not in switched_on and place.what not in reported:
@@ -368,7 +348,7 @@ def _never_on(declared: Iterable[Place], switched_on: frozenset[str]) -> Iterato
             yield diagnose("interrupt-never-on", place.path, place.region, message)
 
 
-def _never_reset(outputs: Iterable[Place], reset: frozenset[str]) -> Iterator[Diagnostic]:
+def _never_reset(outputs: Iterable[Place], reset: Set[str]) -> Iterator[Diagnostic]:
     for place in outputs:
         key, _, shown = place.what.partition("\t")
         if key not in reset and shown.upper() not in reset:

@@ -11,6 +11,7 @@ reports the suspects of each file: findings that depend on facts about called ro
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import field
 from itertools import pairwise
 
 from grammar.check.analysis.accesses import Parameter, Use, address_of
@@ -37,6 +38,8 @@ WRITES = "writes"
 ENDLESS = "endless"
 #: The routine stops the advance run before it moves; looked for on demand.
 STOPS = "stops"
+#: RESUME in the file may leave any routine; no routine has the name.
+RESUMES = "resumes"
 
 ITSELF = -1
 #: Behind these statements the next one may not come, and all ways to the end may lead nowhere.
@@ -63,17 +66,15 @@ class Summaries:
 
     The first fact of each clause follows if all others are true. ``bounds`` are the valid values of
     a parameter, ``handed_on`` pairs of a parameter and the one of a called routine that receives
-    it. ``constants`` are arguments in calls. ``has_resume`` if RESUME in the file may leave any
-    routine.
+    it. ``constants`` are arguments in calls, with the place of the first.
     """
 
-    path: str
-    clauses: tuple[Clause, ...] = ()
-    bounds: tuple[tuple[Parameter, Bound], ...] = ()
-    handed_on: tuple[tuple[Parameter, Parameter], ...] = ()
-    constants: tuple[tuple[Parameter, float, Region], ...] = ()
-    suspects: tuple[Suspect, ...] = ()
-    has_resume: bool = False
+    path: str = ""
+    clauses: dict[Clause, None] = field(default_factory=dict)
+    bounds: list[tuple[Parameter, Bound]] = field(default_factory=list)
+    handed_on: list[tuple[Parameter, Parameter]] = field(default_factory=list)
+    constants: dict[tuple[Parameter, float], Region] = field(default_factory=dict)
+    suspects: list[Suspect] = field(default_factory=list)
 
 
 class SummaryCollector:
@@ -82,27 +83,12 @@ class SummaryCollector:
     def __init__(self, context: Context) -> None:
         self._context = context
         self._path = context.module.path
-        self._clauses: dict[Clause, None] = {}
-        self._bounds: list[tuple[Parameter, Bound]] = []
-        self._handed_on: list[tuple[Parameter, Parameter]] = []
-        self._constants: dict[tuple[Parameter, float], Region] = {}
-        self._suspects: list[Suspect] = []
-        self._has_resume = "RESUME" in (context.module.words or ())
+        self.made = Summaries(self._path)
+        if "RESUME" in (context.module.words or ()):
+            self._resumes()
 
-    def made(self) -> Summaries | None:
-        """Return what was collected."""
-        parts = self._clauses, self._bounds, self._handed_on, self._constants, self._suspects
-        if not any(parts) and not self._has_resume:
-            return None
-        return Summaries(
-            self._path,
-            tuple(self._clauses),
-            tuple(self._bounds),
-            tuple(self._handed_on),
-            tuple((to, value, region) for (to, value), region in self._constants.items()),
-            tuple(self._suspects),
-            self._has_resume,
-        )
+    def _resumes(self) -> None:
+        self.made.clauses[(RESUMES, self._path, "", ITSELF), ()] = None
 
     def routine(self, routine: RoutineBody) -> None:
         """Summarise a routine, and find the suspects in it."""
@@ -116,7 +102,7 @@ class SummaryCollector:
             if parameter.name.key in flow.parameters:
                 self._parameter(flow, parameter.name.key, at, can_try=can_try)
             else:  # texts or lines that cannot be read may name it
-                self._clauses[(WRITES, *at), ()] = None
+                self.made.clauses[(WRITES, *at), ()] = None
         if not can_try:
             self._early(flow)
         self._end(routine)
@@ -138,30 +124,30 @@ class SummaryCollector:
                 reason = f"{address[0].rpartition('/')[2]} does not ask VARSTATE first"
                 region = Region.of(context.source, node.span)
                 holds = ((READS, *to),)
-                self._suspects.append(Suspect("argument-missing", region, message, reason, holds))
+                self.made.suspects.append(Suspect("argument-missing", region, message, reason, holds))
                 continue
             value = constant(context, argument)
             if isinstance(value, int | float) and type(value) is not bool:
-                self._constants.setdefault((to, value), Region.of(context.source, argument.span))
+                self.made.constants.setdefault((to, value), Region.of(context.source, argument.span))
 
     # ------------------------------------------------------------------------- parameters
 
     def _parameter(self, flow: DataFlow, key: str, at: Parameter, *, can_try: bool) -> None:
         read = None if can_try else flow.reads(key)
         if read is not None:
-            self._clauses[(READS, *at), tuple((READS, *one) for one in read)] = None
+            self.made.clauses[(READS, *at), tuple((READS, *one) for one in read)] = None
         uses = flow.uses.get(key, ())
         written = [one.to for one in uses if one.use is not Use.READ]
         for to in (None,) if None in written else written:
-            self._clauses[(WRITES, *at), ((WRITES, *to),) if to else ()] = None
+            self.made.clauses[(WRITES, *at), ((WRITES, *to),) if to else ()] = None
         for use in () if written or can_try else uses:
             bound = self._context.bounds.get(use.name)
             is_whole = use.to and type(use.place) is ast.Variable
             if (bound or is_whole) and flow.is_on_every_way(use):
                 if bound:
-                    self._bounds.append((at, bound))
+                    self.made.bounds.append((at, bound))
                 elif use.to:
-                    self._handed_on.append((at, use.to))
+                    self.made.handed_on.append((at, use.to))
 
     # -------------------------------------------------------------------------- variables
 
@@ -181,27 +167,28 @@ class SummaryCollector:
             message = f"{name.text} has no value yet"
             if access.use is Use.PASSED and to:
                 reason = f"{to[1]} reads it before it assigns to it"
-                self._suspects.append(
+                self.made.suspects.append(
                     Suspect("read-too-early", region, message, reason, ((READS, *to),), lacks)
                 )
             elif access.key not in early:
                 names = list(dict.fromkeys(one[1] for one in others))
                 reason = f"{' and '.join(names)} give{'s' * (len(names) == 1)} it none"
                 lacks += tuple([(READS, *parameter) for parameter in others])  # reported there
-                self._suspects.append(Suspect("read-too-early", region, message, reason, (), lacks))
+                self.made.suspects.append(Suspect("read-too-early", region, message, reason, (), lacks))
 
     # -------------------------------------------------------------------------- the end
 
     def _end(self, routine: RoutineBody) -> None:
         """Add facts on whether the routine returns, and suspects after calls that do not return."""
         context = self._context
-        self._has_resume |= any(type(one.statement) is ast.Resume for one in routine.statements)
+        kinds = {type(one.statement) for one in routine.statements}
+        if ast.Resume in kinds:
+            self._resumes()
         if context.module.words or context.is_cut(routine):
             return
-        kinds = {type(one.statement) for one in routine.statements}
         this = ENDLESS, self._path, routine.node.name.key, ITSELF
         if kinds & _TURNING and not _returns(routine):
-            self._clauses[this, ()] = None
+            self.made.clauses[this, ()] = None
             return
         if ast.CallStatement not in kinds:
             return
@@ -222,13 +209,13 @@ class SummaryCollector:
                     continue
                 fact = ENDLESS, *called, ITSELF
                 if number == 0 and not kinds & _LEAVING:
-                    self._clauses[this, (fact,)] = None
+                    self.made.clauses[this, (fact,)] = None
                 if following is not None and type(following) is not ast.Label:
                     seen.add(called)
                     message = f"this is never reached: {called[1]} does not return"
                     where = head(context.source, following)
                     region = Region.of(context.source, where)
-                    self._suspects.append(Suspect("unreachable", region, message, "", (fact,)))
+                    self.made.suspects.append(Suspect("unreachable", region, message, "", (fact,)))
 
 
 def _returns(routine: RoutineBody) -> bool:
@@ -242,7 +229,7 @@ def _returns(routine: RoutineBody) -> bool:
 def of_project(files: Sequence[Summaries]) -> Iterator[Diagnostic]:
     """Yield the suspects of all files that are true, and arguments with invalid values."""
     facts = _facts(clause for one in files for clause in one.clauses)
-    if any(one.has_resume for one in files):
+    if any(fact[0] == RESUMES for fact in facts):
         facts = {fact for fact in facts if fact[0] != ENDLESS}
     bounds = _bounds(files)
     for one in files:
@@ -251,7 +238,7 @@ def of_project(files: Sequence[Summaries]) -> Iterator[Diagnostic]:
                 yield diagnose(
                     suspect.slug, one.path, suspect.region, suspect.message, reason=suspect.reason
                 )
-        for to, value, region in one.constants:
+        for (to, value), region in one.constants.items():
             for bound in bounds.get(to, ()):
                 if not bound.accepts(value):
                     message = f"{value:g} is passed to {to[1]}, which {bound.use}"

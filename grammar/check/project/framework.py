@@ -8,6 +8,7 @@ are made from them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import field
 
 from grammar.check.analysis.constant_folding import Value
 from grammar.check.analysis.context import Context
@@ -20,7 +21,7 @@ from grammar.check.flow import (
     unused_variables,
     write_protection,
 )
-from grammar.check.flow.effects import NO_EFFECTS, Effects, effects
+from grammar.check.flow.effects import Effects, effects
 from grammar.check.flow.effects import of_project as of_effects
 from grammar.check.limits import name_limits, value_limits
 from grammar.check.names import duplicate_names, undeclared_names
@@ -79,7 +80,7 @@ class Findings:
 
     diagnostics: tuple[Diagnostic, ...]
     references: tuple[UnresolvedName, ...]
-    effects: Effects = NO_EFFECTS
+    effects: Effects = field(default_factory=Effects)
     uses: frozenset[str] = frozenset()
     constants: tuple[OpenConstant, ...] = ()
     calls: tuple[OpenCall, ...] = ()

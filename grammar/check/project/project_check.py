@@ -384,9 +384,8 @@ def _checked(project: Project, module: Module, tree: _Tree, options: CheckOption
             dict(done.values),
         )
         found = in_order([*findings.diagnostics, *advance_stops.check(context)])
-        summaries = advance_stops.with_stops(context, findings.effects.summaries)
-        effects = replace(findings.effects, summaries=summaries)
-        findings = replace(findings, diagnostics=tuple(found), effects=effects)
+        advance_stops.add_stops(context, findings.effects.summaries)
+        findings = replace(findings, diagnostics=tuple(found))
     findings = tree.reading.completed(findings)
     numbers = {one.region.line for one in findings.diagnostics}
     numbers |= {one.region.line for one in findings.references}
