@@ -22,6 +22,7 @@ from grammar.check.flow.data_flow import DataFlow, data_flow
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.semantics.symbols import RoutineSymbol
 from grammar.syntax import ast
+from grammar.syntax.ast import Span
 from grammar.syntax.walk import BODIES, bodies
 from support.lazy_dataclass import dataclass
 
@@ -124,11 +125,27 @@ class SummaryCollector:
                 reason = f"{address[0].rpartition('/')[2]} does not ask VARSTATE first"
                 region = Region.of(context.source, node.span)
                 holds = ((READS, *to),)
-                self.made.suspects.append(Suspect("argument-missing", region, message, reason, holds))
+                self.made.suspects.append(
+                    Suspect("argument-missing", region, message, reason, holds)
+                )
                 continue
             value = constant(context, argument)
             if isinstance(value, int | float) and type(value) is not bool:
-                self.made.constants.setdefault((to, value), Region.of(context.source, argument.span))
+                self.made.constants.setdefault(
+                    (to, value), Region.of(context.source, argument.span)
+                )
+
+    def _suspect(
+        self,
+        slug: str,
+        where: Span,
+        message: str,
+        reason: str,
+        holds: tuple[Fact, ...],
+        lacks: tuple[Fact, ...] = (),
+    ) -> None:
+        region = Region.of(self._context.source, where)
+        self.made.suspects.append(Suspect(slug, region, message, reason, holds, lacks))
 
     # ------------------------------------------------------------------------- parameters
 
@@ -163,18 +180,16 @@ class SummaryCollector:
             name, to = access.name, access.to
             others = sorted(one for one in passed[access.key] if one != to)
             lacks = tuple([(WRITES, *parameter) for parameter in others])
-            region = Region.of(self._context.source, name.span)
             message = f"{name.text} has no value yet"
             if access.use is Use.PASSED and to:
                 reason = f"{to[1]} reads it before it assigns to it"
-                self.made.suspects.append(
-                    Suspect("read-too-early", region, message, reason, ((READS, *to),), lacks)
-                )
+                holds = ((READS, *to),)
+                self._suspect("read-too-early", name.span, message, reason, holds, lacks)
             elif access.key not in early:
                 names = list(dict.fromkeys(one[1] for one in others))
                 reason = f"{' and '.join(names)} give{'s' * (len(names) == 1)} it none"
                 lacks += tuple([(READS, *parameter) for parameter in others])  # reported there
-                self.made.suspects.append(Suspect("read-too-early", region, message, reason, (), lacks))
+                self._suspect("read-too-early", name.span, message, reason, (), lacks)
 
     # -------------------------------------------------------------------------- the end
 
@@ -214,8 +229,7 @@ class SummaryCollector:
                     seen.add(called)
                     message = f"this is never reached: {called[1]} does not return"
                     where = head(context.source, following)
-                    region = Region.of(context.source, where)
-                    self.made.suspects.append(Suspect("unreachable", region, message, "", (fact,)))
+                    self._suspect("unreachable", where, message, "", (fact,))
 
 
 def _returns(routine: RoutineBody) -> bool:

@@ -27,7 +27,7 @@ from grammar.check.project.dependencies import (
     needs_of,
 )
 from grammar.check.project.framework import Findings, check_module, check_project
-from grammar.check.project.suppression_comments import SuppressionComment, suppression_comments
+from grammar.check.project.suppression_comments import Suppression, suppression_comments
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.diagnostics.error_recovery import recover
 from grammar.diagnostics.syntax_errors.findings import syntax_findings
@@ -110,7 +110,7 @@ class FileResult:
     skipped: str | None = None
     table: ModuleTable | None = None
     lines: Mapping[int, str] | None = None
-    comments: tuple[SuppressionComment, ...] = ()
+    comments: tuple[Suppression, ...] = ()
     words: frozenset[str] | None = None
     contribution: Contribution | None = None
     is_open: bool = False
@@ -197,7 +197,7 @@ class _Tree:
 
     table: ModuleTable
     source: Source
-    comments: tuple[SuppressionComment, ...]
+    comments: tuple[Suppression, ...]
     reading: Reading
 
 

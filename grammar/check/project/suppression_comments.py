@@ -17,94 +17,59 @@ from support.lazy_dataclass import dataclass
 # Most files have no such comment, and looking at each comment takes time.
 _MARK = re.compile(r";[ \t]*krl[ \t]*:", re.IGNORECASE)
 _COMMENT = re.compile(
-    r";+[ \t]*krl[ \t]*:[ \t]*(ignore(?:-file)?)(?![\w-])[ \t]*(?:\[([^\]]*)\])?(.*)",
-    re.IGNORECASE | re.ASCII | re.DOTALL,
+    r";+[ \t]*krl[ \t]*:[ \t]*(ignore(?:-file)?)(?![\w-])[ \t]*(?:\[([^\]]*)\])?",
+    re.IGNORECASE | re.ASCII,
 )
 
 
 @dataclass(frozen=True, slots=True)
 class Suppression:
-    """A comment that suppresses findings: prefixes of codes, and the reason.
+    """A comment that suppresses findings of its line, or of its file, or tries to.
 
-    It applies to its own ``line``, from 1, or to the whole file.
+    ``codes`` are prefixes of codes; ``problem`` says why a comment suppresses nothing.
     """
 
-    line: int
-    codes: tuple[str, ...]
-    is_file: bool
-    reason: str
+    region: Region
+    codes: tuple[str, ...] = ()
+    is_file: bool = False
+    problem: str = ""
 
     def covers(self, diagnostic: Diagnostic) -> bool:
         """Return whether it suppresses a finding of its file."""
-        is_here = self.is_file or self.line == diagnostic.region.line
+        is_here = self.is_file or self.region.line == diagnostic.region.line
         return is_here and diagnostic.code.startswith(self.codes)
 
 
-@dataclass(frozen=True, slots=True)
-class Malformed:
-    """A comment that looks like a suppression but is not valid; ``problem`` says why."""
-
-    line: int
-    problem: str
-
-
-def suppression(comment: str, line: int) -> Suppression | Malformed | None:
+def suppression(comment: str, region: Region) -> Suppression | None:
     """Return the suppression in a comment, given with its semicolon; ``None`` if it is none."""
     found = _COMMENT.match(comment)
     if found is None:
         return None
-    how, listed, reason = found.groups()
-    codes = tuple(word.strip().upper() for word in (listed or "").split(",") if word.strip())
+    how, listed = found[1].lower(), found[2] or ""
+    codes = tuple(word.strip().upper() for word in listed.split(",") if word.strip())
     if not codes:
-        return Malformed(line, f"name what to ignore: ; krl: {how.lower()}[CODE]")
+        return Suppression(region, problem=f"name what to ignore: ; krl: {how}[CODE]")
     for prefix in codes:
         if not is_known(prefix):
-            return Malformed(line, f"no code begins with {prefix}")
-    return Suppression(line, codes, how.lower() == "ignore-file", reason.strip())
+            return Suppression(region, problem=f"no code begins with {prefix}")
+    return Suppression(region, codes, how == "ignore-file")
 
 
-def unsuppressed(
-    diagnostics: Iterable[Diagnostic], suppressions: Sequence[Suppression]
-) -> tuple[list[Diagnostic], list[Suppression]]:
-    """Return the findings of a file that are not suppressed, and the comments without effect."""
-    kept: list[Diagnostic] = []
-    idle = dict.fromkeys(suppressions)
-    for diagnostic in diagnostics:
-        acting = [one for one in suppressions if one.covers(diagnostic)]
-        for one in acting:
-            idle.pop(one, None)
-        if not acting:
-            kept.append(diagnostic)
-    return kept, list(idle)
-
-
-@dataclass(frozen=True, slots=True)
-class SuppressionComment:
-    """A comment that suppresses findings, or tries to, and its place."""
-
-    what: Suppression | Malformed
-    region: Region
-
-
-def suppression_comments(source: Source) -> tuple[SuppressionComment, ...]:
+def suppression_comments(source: Source) -> tuple[Suppression, ...]:
     """Return the comments of a file that suppress findings, or try to."""
     if not _MARK.search(source.text):
         return ()
-    found = []
-    for comment in source.comments:
-        what = suppression(comment.text, comment.line)
-        if what is not None:
-            end = comment.column + len(comment.text)
-            found.append(
-                SuppressionComment(what, Region(comment.line, comment.column, comment.line, end))
-            )
-    return tuple(found)
+    made = (
+        suppression(one.text, Region(one.line, one.column, one.line, one.column + len(one.text)))
+        for one in source.comments
+    )
+    return tuple(filter(None, made))
 
 
 def apply_suppressions(
     path: str,
     diagnostics: Iterable[Diagnostic],
-    comments: Sequence[SuppressionComment],
+    comments: Sequence[Suppression],
     sought: tuple[str, ...] = ("",),
 ) -> list[Diagnostic]:
     """Return the findings that no comment suppresses, and findings on the comments.
@@ -112,13 +77,17 @@ def apply_suppressions(
     ``sought`` are the prefixes of the codes that were checked at all: a comment for other codes may
     be useful another time.
     """
-    regions = {comment.what: comment.region for comment in comments}
-    acting = [what for what in regions if isinstance(what, Suppression)]
-    kept, idle = unsuppressed(diagnostics, acting)
-    for what, region in regions.items():
-        if isinstance(what, Malformed):
-            kept.append(diagnose("bad-suppression", path, region, what.problem))
-        elif what in idle and all(code.startswith(sought) for code in what.codes):
-            message = f"nothing to suppress here: {', '.join(what.codes)}"
-            kept.append(diagnose("unused-suppression", path, region, message))
+    kept: list[Diagnostic] = []
+    used: set[Suppression] = set()
+    for diagnostic in diagnostics:
+        acting = [one for one in comments if one.covers(diagnostic)]
+        used.update(acting)
+        if not acting:
+            kept.append(diagnostic)
+    for one in comments:
+        if one.problem:
+            kept.append(diagnose("bad-suppression", path, one.region, one.problem))
+        elif one not in used and all(code.startswith(sought) for code in one.codes):
+            message = f"nothing to suppress here: {', '.join(one.codes)}"
+            kept.append(diagnose("unused-suppression", path, one.region, message))
     return kept

@@ -3,7 +3,6 @@
 import pytest
 
 from grammar.check.project.suppression_comments import (
-    Malformed,
     Suppression,
     apply_suppressions,
     suppression,
@@ -43,17 +42,20 @@ def test_comments_without_use_are_reported() -> None:
     assert [(1, "KRL902")] == kept(text, sought=("KSS", "KRL4"))
 
 
+HERE = Region(7, 1, 7, 2)
+
+
 @pytest.mark.parametrize(
     ("comment", "expected"),
     [
-        ("; krl: ignore[KSS2296] proven", Suppression(7, ("KSS2296",), False, "proven")),
-        (";krl:ignore[krl2, KSS1388]", Suppression(7, ("KRL2", "KSS1388"), False, "")),
-        (";; KRL: Ignore-File [KRL601] x", Suppression(7, ("KRL601",), True, "x")),
+        ("; krl: ignore[KSS2296] proven", Suppression(HERE, ("KSS2296",))),
+        (";krl:ignore[krl2, KSS1388]", Suppression(HERE, ("KRL2", "KSS1388"))),
+        (";; KRL: Ignore-File [KRL601] x", Suppression(HERE, ("KRL601",), is_file=True)),
     ],
 )
 def test_suppress_comments(comment: str, expected: Suppression) -> None:
     """A comment names what it silences, and may say why."""
-    assert expected == suppression(comment, 7)
+    assert expected == suppression(comment, HERE)
 
 
 @pytest.mark.parametrize(
@@ -68,8 +70,8 @@ def test_suppress_comments(comment: str, expected: Suppression) -> None:
 )
 def test_suppress_comments_that_say_nothing(comment: str, word: str) -> None:
     """A comment that is meant to silence and does not is told."""
-    found = suppression(comment, 7)
-    assert isinstance(found, Malformed)
+    found = suppression(comment, HERE)
+    assert found is not None
     assert word in found.problem
 
 
@@ -87,4 +89,4 @@ def test_suppress_comments_that_say_nothing(comment: str, word: str) -> None:
 )
 def test_other_comments_silence_nothing(comment: str) -> None:
     """Only a comment that begins so is meant."""
-    assert suppression(comment, 1) is None
+    assert suppression(comment, HERE) is None
