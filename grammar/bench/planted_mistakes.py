@@ -85,9 +85,12 @@ class _Checked:
 
     def _of_project(self) -> list[Diagnostic]:
         programs = self.programs
-        files = Files(lambda path: programs[path].file.table, lambda path: programs[path].source)
-        spelling = Spelling(lambda: [(path, one.given.words) for path, one in programs.items()])
-        return check_project(self.findings.values(), files, spelling)
+        files = Files(
+            lambda path: programs[path].file.table,
+            lambda path: programs[path].source,
+            Spelling(lambda: [(path, one.given.words) for path, one in programs.items()]),
+        )
+        return check_project(self.findings.values(), files)
 
     def _findings(self, project: Project, module: Module) -> Findings:
         program = self.programs[module.path]

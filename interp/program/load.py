@@ -14,7 +14,6 @@ from functools import cached_property
 from itertools import chain
 
 from grammar.check.analysis.context import placed
-from grammar.check.analysis.spelling import spelling_of
 from grammar.check.names.unresolved_name import Files
 from grammar.check.project.framework import Checked, check_module, check_project, typed_module
 from grammar.diagnostics.syntax_errors.findings import syntax_findings
@@ -382,12 +381,9 @@ def _checked(
         project, stand_ins = with_returns(whole.project), tuple(whole.stand_ins)
         sources = {**sources, **{source.path: source for source in whole.sources}}
     units = _units(project, sources, check_module if strict else typed_module)
-    texts = {unit.module.path: unit.source for unit in units.values()}
-    tables = {unit.module.path: unit.module.table for unit in units.values()}
     findings = [unit.checked.findings for unit in units.values()]
-    files = Files(tables.get, texts.__getitem__)
-    spelling = spelling_of(unit.source for unit in units.values())
-    for one in check_project(findings, files, spelling) if strict else ():
+    files = Files.of((unit.source, unit.module.table) for unit in units.values())
+    for one in check_project(findings, files) if strict else ():
         if one.severity == "error":
             where = "" if one.path == main else f"; it is in the project of {main}"
             raise LinkError(f"{one.path}:{one.region.line}: {one.code}: {one.message}{where}")

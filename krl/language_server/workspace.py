@@ -14,7 +14,6 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from grammar.check.analysis.spelling import spelling_of
 from grammar.check.names.unresolved_name import Files
 from grammar.check.project.dependencies import Contribution, Needs, contribution, needs_of
 from grammar.check.project.framework import Checked, Findings, check_module, check_project
@@ -261,10 +260,8 @@ class OpenProject:
         """Return the findings of a project; only those of the file until all files are checked."""
         paths = [module.path for module in project.modules]
         if all(one in self._judged for one in paths):
-            sources = {path: self._files[path].source for path in paths}
-            tables = {one.path: one.table for one in project.modules}
-            files, spelling = Files(tables.get, sources.__getitem__), spelling_of(sources.values())
-            return check_project((self._judged[one].findings for one in paths), files, spelling)
+            files = Files.of((self._files[one.path].source, one.table) for one in project.modules)
+            return check_project((self._judged[one].findings for one in paths), files)
         return self._judged[path].findings.diagnostics
 
     def catch_up(self) -> Iterator[str]:

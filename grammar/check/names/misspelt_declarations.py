@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from grammar.check.analysis.context import Context
-from grammar.check.analysis.spelling import Spelling
 from grammar.check.names.unresolved_name import (
     MOST_SLIPS,
     SLUGS,
@@ -96,7 +95,7 @@ def used_in_unread(words: Iterable[str]) -> frozenset[str]:
 
 
 def slips_in_project(
-    found: Iterable[UnresolvedName], used: Set[str], files: Files, spelling: Spelling
+    found: Iterable[UnresolvedName], used: Set[str], files: Files
 ) -> dict[tuple[Key, Declared | None], Diagnostic]:
     """Return findings at declarations whose misspelling leaves the uses of a name undeclared.
 
@@ -108,7 +107,7 @@ def slips_in_project(
     for one in found if REST not in used else ():
         if one.declared is not None and one.declared.used not in used:
             uses.setdefault(one.slip, []).append(one)
-    slips = {key: at for key, some in uses.items() if (at := _slipped(some, files, spelling))}
+    slips = {key: at for key, some in uses.items() if (at := _slipped(some, files))}
     often = {
         key[0]
         for key in slips
@@ -119,7 +118,7 @@ def slips_in_project(
     return slips
 
 
-def _slipped(some: Sequence[UnresolvedName], files: Files, spelling: Spelling) -> Diagnostic | None:
+def _slipped(some: Sequence[UnresolvedName], files: Files) -> Diagnostic | None:
     """Return the finding at an unused declaration that is near one name; ``None`` if that is."""
     first, count = some[0], sum(one.count for one in some)
     at, written, name = first.declared, first.near[0], first.name
@@ -133,7 +132,7 @@ def _slipped(some: Sequence[UnresolvedName], files: Files, spelling: Spelling) -
         slug, is_certain = _PARTS[mark], first.finding.severity == "error"
         shown = mark.removeprefix(".")
         written, name = f"{shown}{written} of {type_}", f"{shown}{called}"
-    if count < MOST_SLIPS and not spelling.is_likelier(called, first.near[0]):
+    if count < MOST_SLIPS and not files.spelling.is_likelier(called, first.near[0]):
         return None
     region = at.region(files)
     if region is None:
@@ -156,14 +155,14 @@ def _at_declaration(
     )
 
 
-def unlike_others(spelling: Spelling, used: Set[str], files: Files) -> Iterator[Diagnostic]:
+def unlike_others(used: Set[str], files: Files) -> Iterator[Diagnostic]:
     """Yield unused declarations that are a slip of a name in other files, or of a series.
 
     An EXT is one if no file has its routine and a routine one slip away exists.
     """
     announced: list[tuple[str, Symbol]] = []
     routines: dict[str, str] = {}
-    for path in spelling.files if REST not in used else ():
+    for path in files.spelling.files if REST not in used else ():
         table = files.table(path)
         if table is None:
             continue
@@ -176,7 +175,8 @@ def unlike_others(spelling: Spelling, used: Set[str], files: Files) -> Iterator[
                 continue
             if space is Space.ROUTINE and symbol.kind is Kind.EXTERNAL:
                 announced.append((path, symbol))
-            meant = spelling.meant(symbol.name) if space in (Space.VALUE, Space.TYPE) else None
+            may_slip = space in (Space.VALUE, Space.TYPE)
+            meant = files.spelling.meant(symbol.name) if may_slip else None
             if meant and not table.table.find(space, meant.upper()):  # nobody declares one twice
                 message = f"{symbol.name} is declared and never used"
                 reason = f"{meant} is written elsewhere"

@@ -84,17 +84,12 @@ def _typos(names: tuple[str, ...]) -> Typos:
 # --------------------------------------------------------------------------------- a project
 
 
-def misspelt_constants(
-    found: Iterable[OpenConstant], files: Files, paths: Iterable[str]
-) -> Iterator[Diagnostic]:
-    """Yield a warning for each constant that is a slip of one that is declared or more frequent.
-
-    ``paths`` are those of all files, any of which may declare its enumeration.
-    """
+def misspelt_constants(found: Iterable[OpenConstant], files: Files) -> Iterator[Diagnostic]:
+    """Yield a warning for each constant that is a slip of one that is declared or more frequent."""
     uses: dict[str, list[OpenConstant]] = {}
     for one in found:
         uses.setdefault(one.name.upper(), []).append(one)
-    declared = {name.upper(): name for name in _declared(files, paths)} if uses else {}
+    declared = {name.upper(): name for name in _declared(files)} if uses else {}
     counts = {key: sum(one.count for one in some) for key, some in uses.items()}
     usual = (some[0].name for key, some in uses.items() if counts[key] > 1 and key not in declared)
     typos = Typos([*declared.values(), *usual])
@@ -116,9 +111,9 @@ def misspelt_constants(
                 )
 
 
-def _declared(files: Files, paths: Iterable[str]) -> Iterator[str]:
+def _declared(files: Files) -> Iterator[str]:
     """Yield the constants of the enumerations that some files declare at top level."""
-    for path in paths:
+    for path in files.spelling.files:
         table = files.table(path)
         for symbol in table.table.spaces[Space.TYPE].values() if table else ():
             if isinstance(symbol, TypeSymbol) and symbol.kind is Kind.ENUMERATION:

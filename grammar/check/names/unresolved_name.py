@@ -6,9 +6,10 @@ all files together.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from grammar.check.analysis.context import Context
+from grammar.check.analysis.spelling import Spelling, spelling_of
 from grammar.diagnostics.diagnostic import Diagnostic, Region
 from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import ModuleTable, TypeSymbol
@@ -46,11 +47,19 @@ class Files:
     """The files of a project, for findings at their declarations.
 
     ``table`` returns the table of the file with a path, ``None`` if it is gone or cannot be read;
-    ``source`` the text of a file that has a table.
+    ``source`` the text of a file that has a table. ``spelling`` knows the names of all files.
     """
 
     table: Callable[[str], ModuleTable | None]
     source: Callable[[str], Source]
+    spelling: Spelling
+
+    @staticmethod
+    def of(files: Iterable[tuple[Source, ModuleTable | None]]) -> Files:
+        """Return these files, given by their texts and tables."""
+        known = {source.path: (source, table) for source, table in files}
+        spelling = spelling_of(source for source, _ in known.values())
+        return Files(lambda path: known[path][1], lambda path: known[path][0], spelling)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,12 +7,10 @@ are made from them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import field, replace
 
-from grammar.check.analysis.constant_folding import Value
 from grammar.check.analysis.context import Context
-from grammar.check.analysis.spelling import Spelling, spelling_of
 from grammar.check.flow import (
     control_flow,
     entry_points,
@@ -34,13 +32,10 @@ from grammar.check.structure import misplaced_statements, splines, unbalanced_fo
 from grammar.check.types import declarations, initial_values, statements, undeclared_kinds
 from grammar.check.types.missing_arguments import OpenCall, missing_arguments, open_calls
 from grammar.diagnostics.diagnostic import Diagnostic, in_order
-from grammar.semantics.link import Project, Workspace
+from grammar.semantics.link import Project
 from grammar.semantics.predefined import System
-from grammar.semantics.resolve import Resolution, resolve
+from grammar.semantics.resolve import resolve
 from grammar.semantics.scopes import Module
-from grammar.semantics.types import Enumeration, Type
-from grammar.syntax import ast
-from grammar.syntax.ast import Node
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
 
@@ -86,20 +81,11 @@ class Findings:
     calls: tuple[OpenCall, ...] = ()
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Checked:
-    """A checked file: its findings, and the facts about its syntax tree.
+@dataclass(frozen=True, eq=False)
+class Checked(Context):
+    """A file with what is known of its syntax tree, and the findings if it was checked."""
 
-    The tables are keyed by node identity: ``types`` has every expression, `UNKNOWN` if its type is
-    not known; ``enumerations`` those of constants; ``values`` the constant values that were needed.
-    """
-
-    module: Module
-    findings: Findings
-    resolution: Resolution
-    types: Mapping[Node, Type]
-    enumerations: Mapping[ast.EnumConstant, Enumeration]
-    values: Mapping[Node, Value]
+    findings: Findings = Findings((), ())
 
 
 def typed_module(project: Project, module: Module, source: Source) -> Checked:
@@ -107,25 +93,18 @@ def typed_module(project: Project, module: Module, source: Source) -> Checked:
 
     That is all that is needed to run it, and much faster than a check.
     """
-    context = Context(project, module, source, resolve(project, module), System.load())
+    typed = Checked(project, module, source, resolve(project, module), System.load())
     for check in _TYPING:
-        for _ in check(context):
+        for _ in check(typed):
             pass
-    return Checked(
-        module,
-        Findings((), ()),
-        context.resolution,
-        context.types,
-        context.enumerations,
-        context.values,
-    )
+    return typed
 
 
 def check_module(project: Project, module: Module, source: Source) -> Checked:
     """Check one file that can be read; ``source`` is its text."""
     resolution = resolve(project, module)
     is_lacking = undeclared_names.lacks_data_list(project, module, resolution)
-    context = Context(project, module, source, resolution, System.load(), is_lacking=is_lacking)
+    context = Checked(project, module, source, resolution, System.load(), is_lacking=is_lacking)
     found = in_order(diagnostic for check in CHECKS for diagnostic in check(context))
     findings = Findings(
         tuple(found),
@@ -136,50 +115,26 @@ def check_module(project: Project, module: Module, source: Source) -> Checked:
         tuple(open_calls(context)),
     )
     context.flows.clear()  # they refer to the context: a cycle would keep the tree
-    return Checked(
-        module,
-        findings,
-        context.resolution,
-        context.types,
-        context.enumerations,
-        context.values,
-    )
+    context.accesses.clear()
+    return replace(context, findings=findings)
 
 
-def check_project(
-    findings: Iterable[Findings], files: Files, spelling: Spelling
-) -> list[Diagnostic]:
-    """Return all findings of a project in order, from those of its files.
-
-    ``spelling`` knows the names of all files.
-    """
+def check_project(findings: Iterable[Findings], files: Files) -> list[Diagnostic]:
+    """Return all findings of a project in order, from those of its files."""
     kept = list(findings)
     references = [reference for one in kept for reference in one.references]
     constants = [constant for one in kept for constant in one.constants]
     used = frozenset[str]().union(*(one.uses for one in kept))
-    slips = slips_in_project(references, used, files, spelling)
+    slips = slips_in_project(references, used, files)
     explained = {one.finding for one in references if one.slip in slips}
     found = [one for file in kept for one in file.diagnostics if one not in explained]
     at_slips = {(one.path, one.region): one for one in slips.values()}
     found += at_slips.values()
-    unlike = unlike_others(spelling, used, files)
+    unlike = unlike_others(used, files)
     found += (one for one in unlike if (one.path, one.region) not in at_slips)
     rest = (one for one in references if not one.finding and one.slip not in slips)
-    found += of_names(rest, spelling)
-    found += misspelt_constants(constants, files, spelling.files)
+    found += of_names(rest, files.spelling)
+    found += misspelt_constants(constants, files)
     found += missing_arguments(call for one in kept for call in one.calls)
     found += of_effects(one.effects for one in kept)
-    return in_order(found)
-
-
-def check(workspace: Workspace, source_of: Callable[[Module], Source]) -> list[Diagnostic]:
-    """Check all files of a workspace that can be read; the findings are in order."""
-    found: list[Diagnostic] = []
-    for project in workspace.projects:
-        read = [module for module in project.modules if module.syntax is not None]
-        sources = {module.path: source_of(module) for module in read}
-        tables = {module.path: module.table for module in read}
-        findings = (check_module(project, one, sources[one.path]).findings for one in read)
-        files, spelling = Files(tables.get, sources.__getitem__), spelling_of(sources.values())
-        found += check_project(findings, files, spelling)
     return in_order(found)

@@ -13,7 +13,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 
-from grammar.check.analysis.context import Context
 from grammar.check.analysis.spelling import Spelling
 from grammar.check.flow import advance_stops
 from grammar.check.flow.effects import effects_of_unread
@@ -32,7 +31,6 @@ from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_orde
 from grammar.diagnostics.error_recovery import recover
 from grammar.diagnostics.syntax_errors.findings import syntax_findings
 from grammar.semantics.link import File, Project, link
-from grammar.semantics.predefined import System
 from grammar.semantics.scopes import REST, Module
 from grammar.semantics.symbol_table import table_of
 from grammar.semantics.symbols import ModuleTable
@@ -188,7 +186,7 @@ def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) ->
     given = {path: files[index].read.contribution for path, index in indices.items()}
     spelling = Spelling(lambda: [(path, one.words) for path, one in given.items() if one])
     findings = (one.checked.findings for one in files)
-    return check_project(findings, Files(table, source), spelling)
+    return check_project(findings, Files(table, source, spelling))
 
 
 @dataclass(frozen=True, slots=True)
@@ -373,18 +371,8 @@ def _checked(project: Project, module: Module, tree: _Tree, options: CheckOption
     done = check_module(project, module, tree.source)
     findings = done.findings
     if options.stops:
-        context = Context(
-            project,
-            module,
-            tree.source,
-            done.resolution,
-            System.load(),
-            dict(done.types),
-            dict(done.enumerations),
-            dict(done.values),
-        )
-        found = in_order([*findings.diagnostics, *advance_stops.check(context)])
-        advance_stops.add_stops(context, findings.effects.summaries)
+        found = in_order([*findings.diagnostics, *advance_stops.check(done)])
+        advance_stops.add_stops(done, findings.effects.summaries)
         findings = replace(findings, diagnostics=tuple(found))
     findings = tree.reading.completed(findings)
     numbers = {one.region.line for one in findings.diagnostics}

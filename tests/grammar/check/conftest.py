@@ -9,13 +9,14 @@ from collections.abc import Callable, Mapping
 
 import pytest
 
-from grammar.check.project.framework import Checked, check, check_module
+from grammar.check.project.framework import Checked, check_module
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, Project, link
 from grammar.semantics.scopes import Module
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
+from tests.grammar.check.workspace_check import check
 
 EXPECTED = re.compile(r";>(.*)")
 MARKS = {"error": "", "warning": "?", "note": "-"}

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from grammar.check.project.framework import check
 from grammar.semantics.link import File, link
 from grammar.semantics.rules import is_confirmed
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
+from tests.grammar.check.workspace_check import check
 
 NEGATIVES = Path(__file__).parents[3] / "corpus" / "negatives"
 ALL = [

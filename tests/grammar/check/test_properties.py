@@ -7,10 +7,10 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grammar.check.project.framework import check
 from grammar.semantics.link import File, link
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
+from tests.grammar.check.workspace_check import check
 
 CORPUS = Path(__file__).parents[3] / "corpus"
 NEGATIVES = sorted(

@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 import pytest
 
-from grammar.check.project.framework import check
 from grammar.check.project.project_check import CheckOptions, Content, found_in_project, recheck
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, link
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source, names_in_text
+from tests.grammar.check.workspace_check import check
 
 Agrees = Callable[..., None]
 

@@ -4,7 +4,6 @@ import pickle
 from collections.abc import Callable, Mapping
 from typing import TypeVar
 
-from grammar.check.analysis.spelling import spelling_of
 from grammar.check.names.unresolved_name import Files
 from grammar.check.project.framework import Checked, Findings, check_project
 from grammar.diagnostics.diagnostic import Diagnostic
@@ -94,10 +93,9 @@ def test_findings_can_be_kept(checked: Check) -> None:
     kept = pickle.loads(pickle.dumps(made.findings))
     assert made.findings == kept
     file = Source(text, "NEG.src")
-    its_files = Files(lambda _: made.module.table, lambda _: file)
 
     def found(findings: Findings) -> list[Diagnostic]:
-        return check_project([findings], its_files, spelling_of([file]))
+        return check_project([findings], Files.of([(file, made.module.table)]))
 
     assert found(made.findings) == found(kept)
 
