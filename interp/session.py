@@ -33,7 +33,7 @@ from interp.program.variables import data_lists
 from interp.robot.api.batch import BatchCore
 from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
-from interp.robot.planning.deferred_arm import DeferredArm
+from interp.robot.planning.deferred_arm import deferred_arm
 from interp.robot.simulation.factory import RobotName, make_robot
 from interp.robot.simulation.robot import Robot
 from interp.robot.simulation.scene import Scene
@@ -236,7 +236,7 @@ def _system_values(program: CheckedProgram) -> Mapping[str, Value]:
     return system_values(program)
 
 
-def _arm(machine: MachineData, start: Sequence[float], file: RobotFile | None) -> DeferredArm:
+def _arm(machine: MachineData, start: Sequence[float], file: RobotFile | None) -> PlannedArm:
     """Return the arm; raises `LinkError` if its start position is impossible.
 
     The masses of a robot from a ``file`` are known, so that its torques limit its motions.
@@ -252,7 +252,7 @@ def _arm(machine: MachineData, start: Sequence[float], file: RobotFile | None) -
 
         return PlannedArm(machine, start, InverseDynamics(Cell(machine, robot=file)))
 
-    arm = DeferredArm(made)
+    arm = deferred_arm(made)
     every = zip(machine.every_axis, machine.standing(start), strict=True)
     stands = all(axis.lower <= value <= axis.upper for axis, value in every)
     if not stands or machine.palletising is not None or not machine.is_wrist_central:
@@ -264,7 +264,7 @@ def _arm(machine: MachineData, start: Sequence[float], file: RobotFile | None) -
 
 
 def _tracking(
-    arm: DeferredArm,
+    arm: PlannedArm,
     robot: Robot,
     machine: MachineData,
     start: Sequence[float],

@@ -11,7 +11,7 @@ changes, it brakes. So `Arm.next_event` must be called again each time.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import field
 from typing import TYPE_CHECKING, Literal, Protocol
 
@@ -203,12 +203,11 @@ class Arm(Protocol):
         """
         ...
 
-    def mark(self) -> object:
-        """Return a mark with which `rewind` can undo all that is planned from here on."""
-        ...
+    def mark(self) -> Callable[[], None]:
+        """Return what undoes each `plan` from here on.
 
-    def rewind(self, mark: object) -> None:
-        """Undo each `plan` since the mark; no time may pass and nothing else be called between."""
+        No time may pass and nothing else be called between.
+        """
         ...
 
     def next_event(self) -> ArmEvent | None:

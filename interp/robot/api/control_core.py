@@ -69,8 +69,8 @@ class ControlCore:
         self._due: list[tuple[int, int, Effect | None, Command]] = []
         self._order = count()
         self._links: dict[Event, list[Link]] = defaultdict(list)
-        #: The number of links that may still start a command.
-        self._start_links: dict[Command, int] = {}
+        #: Commands that wait for an event to start them, in their order.
+        self._waiting: dict[Command, None] = {}
         #: Planned motions that have not ended, by number, in their order.
         self._motions: dict[int, MotionCommand] = {}
         #: Ended motions, as long as places in the blend after them may still be passed.
@@ -110,7 +110,7 @@ class ControlCore:
         """Add a link between loaded commands; raise `CommandError` if it is inconsistent."""
         link = Link(event, effect, command, delay)
         self._check_link(link, frozenset())
-        if effect == "start" and command not in self._start_links:
+        if effect == "start" and command not in self._waiting:
             raise CommandError(f"{link}: it is not waiting for a start")
         self._attach(link)
 
@@ -235,8 +235,6 @@ class ControlCore:
             if command.state is CommandState.ACTIVE:
                 self._finish(command, CommandState.ENDED, "ended")
             return
-        if effect == "start":
-            self._drop_start_link(command, is_taken=True)
         self._act(effect, command)
 
     def _handle_arm_event(self, event: ArmEvent) -> None:
@@ -278,7 +276,7 @@ class ControlCore:
 
     def _begin(self, command: Command) -> None:
         """Start a command because of an event; a motion is planned only now."""
-        self._start_links.pop(command, None)
+        self._waiting.pop(command, None)
         if isinstance(command, MotionCommand):
             try:
                 self._plan_all(self.now, [command])
@@ -289,7 +287,7 @@ class ControlCore:
 
     def _plan_all(self, now: int, commands: Iterable[MotionCommand]) -> None:
         """Plan all motions or none; raise the `Fault` of the first that cannot be planned."""
-        mark = self.arm.mark()
+        rewind = self.arm.mark()
         planned: dict[int, MotionCommand] = {}
         notices: list[tuple[int, ...]] = []
         try:
@@ -298,7 +296,7 @@ class ControlCore:
                 planned[command.motion.number] = command
         except Fault:
             if planned:
-                self.arm.rewind(mark)
+                rewind()
             raise
         for (number, command), words in zip(planned.items(), notices, strict=True):
             command.notices = words
@@ -342,7 +340,7 @@ class ControlCore:
         fault: Fault | None = None,
     ) -> None:
         command.state = state
-        self._start_links.pop(command, None)
+        self._waiting.pop(command, None)
         self._emit(command, what, arm=arm, fault=fault)
         is_behind = command in self._behind.values()
         self._drop(command, _BEHIND if is_behind else frozenset())
@@ -352,7 +350,7 @@ class ControlCore:
     def _attach(self, link: Link) -> None:
         self._links[link.event].append(link)
         if link.effect == "start":
-            self._start_links[link.command] = self._start_links.get(link.command, 0) + 1
+            self._waiting[link.command] = None
 
     def _emit(
         self,
@@ -376,11 +374,10 @@ class ControlCore:
 
     def _drop(self, command: Command, but: frozenset[str] = frozenset()) -> None:
         """Remove links from the events of a command that can no longer happen, except ``but``."""
-        own = [event for event in self._links if event.command is command]
-        for event in [event for event in own if event.what not in but]:
-            for link in self._links.pop(event):
-                if link.effect == "start":
-                    self._drop_start_link(link.command, is_taken=False)
+        lost = [e for e in self._links if e.command is command and e.what not in but]
+        gone = [link for event in lost for link in self._links.pop(event)]
+        if any(link.effect == "start" for link in gone):
+            self._cancel_deadlocked()
 
     def _drop_behind(self, numbers: Iterable[int]) -> None:
         for number in numbers:
@@ -388,35 +385,21 @@ class ControlCore:
             if command is not None:
                 self._drop(command)
 
-    def _drop_start_link(self, command: Command, *, is_taken: bool) -> None:
-        left = self._start_links.get(command)
-        if left is None:
-            return
-        self._start_links[command] = left - 1
-        if is_taken or command.state is not CommandState.LINKED:
-            return
-        if left == 1:
-            self._finish(command, CommandState.CANCELLED, "cancelled")
-        else:
-            self._cancel_deadlocked()
-
     def _cancel_deadlocked(self) -> None:
+        """Cancel commands that wait for nothing or only for one another, the first one first."""
         while (deadlocked := self._first_deadlocked()) is not None:
             self._finish(deadlocked, CommandState.CANCELLED, "cancelled")
 
     def _first_deadlocked(self) -> Command | None:
-        """Return the first of the commands that wait only for one another, if there are any."""
-        waiting = [one for one in self._start_links if one.state is CommandState.LINKED]
         coming = {command for _, _, effect, command in self._due if effect == "start"}
-        starts = [
-            (link.command, event.command)
-            for event, links in self._links.items()
-            for link in links
-            if link.effect == "start"
-        ]
+        links = [link for each in self._links.values() for link in each if link.effect == "start"]
         while (
-            more := {one for one, cause in starts if cause in coming or cause not in waiting}
+            more := {
+                link.command
+                for link in links
+                if link.event.command in coming or link.event.command not in self._waiting
+            }
             - coming
         ):
             coming |= more
-        return next((one for one in waiting if one not in coming), None)
+        return next((one for one in self._waiting if one not in coming), None)

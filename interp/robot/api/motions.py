@@ -32,13 +32,13 @@ class MotionFactory:
         self, *, criteria: Sequence[str] = (), places: Sequence[Place] = (), **target: float
     ) -> MotionCommand:
         """Return a synchronous motion of the axes."""
-        return self._made("PTP", target, None, None, criteria, places)
+        return self._made("PTP", target, criteria, places)
 
     def lin(
         self, *, criteria: Sequence[str] = (), places: Sequence[Place] = (), **target: float
     ) -> MotionCommand:
         """Return a motion of the tool along a straight line."""
-        return self._made("LIN", target, None, None, criteria, places)
+        return self._made("LIN", target, criteria, places)
 
     def circ(
         self,
@@ -50,16 +50,16 @@ class MotionFactory:
         **target: float,
     ) -> MotionCommand:
         """Return an arc of the tool through an auxiliary point; ``angle`` is CA in degrees."""
-        return self._made("CIRC", target, auxiliary, angle, criteria, places)
+        return self._made("CIRC", target, criteria, places, _members(auxiliary), angle)
 
     def _made(
         self,
         kind: str,
         target: dict[str, float],
-        auxiliary: dict[str, float] | None,
-        angle: float | None,
         criteria: Sequence[str],
         places: Sequence[Place],
+        auxiliary: dict[str, float] | None = None,
+        angle: float | None = None,
     ) -> MotionCommand:
         self.count += 1
         return MotionCommand(
@@ -69,7 +69,7 @@ class MotionFactory:
                 kind,
                 self.settings,
                 target=_members(target),
-                auxiliary=None if auxiliary is None else _members(auxiliary),
+                auxiliary=auxiliary,
                 angle=angle,
                 criteria=tuple(criteria),
                 places=tuple(places),

@@ -1,8 +1,7 @@
 """Closed-form kinematics of a six-axis arm with a central (spherical) wrist.
 
-Forward kinematics is the chain of `interp.robot.kinematics.machine_data`, step by step. Inverse
-kinematics separates position and orientation (Pieper): the wrist centre determines the main axes by
-the law of cosines, and the remaining rotation determines the wrist axes as Euler angles.
+Inverse kinematics separates position and orientation (Pieper): the wrist centre determines the main
+axes by the law of cosines, and the remaining rotation determines the wrist axes as Euler angles.
 
 Inside this module, the *upright arm* is the same arm with the senses and zero positions of its axes
 removed. Arrays are those of `interp.robot.kinematics.kinematics`.
@@ -11,14 +10,12 @@ removed. Arrays are those of `interp.robot.kinematics.kinematics`.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.kinematics import Array, continued, matrix_of, nearest_turns, wrapped
+from interp.robot.kinematics.kinematics import Array, Kinematics, matrix_of, nearest_turns, wrapped
 from interp.robot.kinematics.machine_data import MachineData, MachineDataError
-from interp.values.poses import sine_cosine
 
 _SHOULDER = np.array([1.0, 1.0, -1.0, -1.0])  # wrist centre in front of axis 1, or behind it
 _ELBOW = np.array([-1.0, 1.0, -1.0, 1.0])  # sign of the bend
@@ -26,19 +23,16 @@ _STRAIGHT = 1e-12
 """Sine of A5 below which axes 4 and 6 are collinear."""
 _UNDETERMINED = 2e-9
 """Sine of A5 below which A4 is free and stays where it is: 1e-7 degrees."""
-_BENT = 1e-3
-"""Sine of A5 above which the wrist is clearly bent."""
 _MARGIN = 1e-7
 """mm of reach that may be lost by rounding."""
 _OVERHEAD = 1e-3
 """mm from axis 1 within which a point counts as on it; a REAL resolves 1e-4 mm at 1 m."""
 _FAR = 1e9
 """mm beyond which a pose counts as unreachable, like one that is NaN."""
-_TOLERANCE = 1e-9  # degrees
 
 
-class CentralWrist:
-    """The kinematics of one machine, as a `interp.robot.kinematics.kinematics.Kinematics`.
+class CentralWrist(Kinematics):
+    """The kinematics of one machine.
 
     Raises `MachineDataError` for a wrist that is not central, and for impossible lengths.
     """
@@ -48,50 +42,20 @@ class CentralWrist:
     def __init__(self, machine: MachineData) -> None:
         if not machine.is_wrist_central:
             raise MachineDataError("the wrist is not central, with axis 4 along the forearm")
-        self.machine = machine
+        super().__init__(machine)
         self.elbow = machine.elbow
-        self._before = matrix_of(machine.tiroro)
-        self._after = matrix_of(machine.tflwp)
         self._to_inner = matrix_of(machine.tiroro.inverse())
         self._to_wrist = matrix_of(machine.tflwp.inverse())
         directions = np.array([axis.direction for axis in machine.axes], dtype=np.float64)
-        self._turns = np.radians(directions)  # radians about Z for a degree
+        self._angles = np.radians(directions)  # radians about Z for a degree
         self._forearm = np.array(machine.tx3p3.position)
-        self._mount = matrix_of(machine.tx3p3)[:3, :3]
         self._check_lengths()
-        self._twists = [_about_x(link.alpha) for link in (machine.dh_4, machine.dh_5)]
-        along, turned = self._wrist()
-        sense = self._twists[0][2, 1]  # 1 where $DH_4 twists by 90 degrees, -1 by -90
+        along, turned = self._forearm_axis()
+        sense = math.copysign(1.0, machine.dh_4.alpha)
         #: Degrees for a radian of the upright arm.
         self._senses = np.degrees([1.0, 1.0, 1.0, along, -sense, along]) * directions
         self._zeros = np.array([0.0, math.pi / 2, 0.0, along * turned, 0.0, 0.0])
         self._reverse = np.diag([along, 1.0, along])
-
-    def coupled(self, axes: npt.ArrayLike) -> Array:
-        """Return the axes as they are: none is coupled to another."""
-        return np.asarray(axes, dtype=np.float64)
-
-    def about_tips(self, poses: Array, _tool: Array, /) -> Array:
-        """Return the poses as they are: the arm can take every orientation."""
-        return poses
-
-    def forward(self, axes: npt.ArrayLike) -> Array:
-        """Return poses of the flange, ``(..., 4, 4)``, for axes ``(..., 6)``."""
-        theta = np.asarray(axes, dtype=np.float64) * self._turns
-        main = _about_z(theta[..., 0]) @ _about_y(theta[..., 1] + theta[..., 2])
-        wrist = (
-            _about_z(theta[..., 3])
-            @ self._twists[0]
-            @ _about_z(theta[..., 4])
-            @ self._twists[1]
-            @ _about_z(theta[..., 5])
-        )
-        pose = np.zeros((*theta.shape[:-1], 4, 4))
-        pose[..., :3, :3] = main @ self._mount @ wrist
-        pose[..., :3, 3] = self._wrist_centre(theta)
-        pose[..., 3, 3] = 1.0
-        moved: Array = self._before @ pose @ self._after
-        return moved
 
     def inverse(self, poses: npt.ArrayLike) -> Array:
         """Return all solutions for poses ``(..., 4, 4)`` as axes ``(..., 8, 6)``; NaN if none.
@@ -125,7 +89,7 @@ class CentralWrist:
         determine shoulder, elbow, and the full turns of each axis. The wrist is flipped if that is
         nearer; if it is straight, A4 is that of the reference.
         """
-        main, wrist = self._main_and_wrist(poses, references * self._turns)
+        main, wrist = self._main_and_wrist(poses, references * self._angles)
         own = references[:, 3] / self._senses[3] + self._zeros[3]
         bent = references[:, 4] / self._senses[4]
         sine = np.hypot(wrist[:, 0, 2], wrist[:, 1, 2])
@@ -139,23 +103,6 @@ class CentralWrist:
         a4 = np.where(sine < _UNDETERMINED, own, a4)
         found = self._degrees(main, a4, sign * a5, wrist)
         return nearest_turns(found, references)
-
-    def inverse_along(self, poses: Array, start: Sequence[float]) -> Array | None:
-        """Return continuous axes ``(n, 6)`` along a path, in the configuration of ``start``.
-
-        Return ``None`` if that is not certain: the wrist is or becomes straight, the path leaves
-        the configuration, or its samples are too far apart.
-        """
-        references = np.array(start, dtype=np.float64)
-        theta = np.broadcast_to(references * self._turns, (len(poses), 6))
-        main, wrist = self._main_and_wrist(poses, theta)
-        sine = np.hypot(wrist[:, 0, 2], wrist[:, 1, 2])
-        sign = math.copysign(1.0, references[4] * self._senses[4])
-        if not (sine > _BENT).all():
-            return None
-        a4 = np.arctan2(sign * wrist[:, 1, 2], sign * wrist[:, 0, 2])
-        found = self._degrees(main, a4, sign * np.arctan2(sine, wrist[:, 2, 2]), wrist)
-        return continued(references, found)
 
     def _main_and_wrist(self, poses: Array, theta: Array) -> tuple[Array, Array]:
         """Return the main axes of the upright arm, and the rotation that remains for its wrist."""
@@ -207,25 +154,10 @@ class CentralWrist:
         main[np.isnan(a3)] = math.nan
         return main
 
-    def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
-        """Return bits 0 to 2 of the Status of axes ``(..., 6)`` [POS-03, POS-04, POS-05, CON-01].
-
-        1 if the wrist centre is behind axis 1, 2 if A3 is not below `MachineData.elbow`, 4 if A5 is
-        negative.
-        """
-        given = np.asarray(axes, dtype=np.float64)
-        behind = self._ahead(given * self._turns) < -_MARGIN
-        bent = given[..., 2] >= self.machine.elbow - _TOLERANCE
-        status: npt.NDArray[np.int64] = behind + 2 * bent + 4 * (given[..., 4] < -_TOLERANCE)
-        return status
-
-    def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
-        """Return the distance of the wrist centre from axis 1 in mm, for axes ``(..., 6)``."""
-        ahead = self._ahead(np.asarray(axes, dtype=np.float64) * self._turns)
-        distance: Array = np.hypot(ahead, self._forearm[1])
-        return distance
-
     # ------------------------------------------------------------------------------- the geometry
+
+    def _wrist(self, axes: Array) -> tuple[Array, Array]:
+        return self._ahead(axes * self._angles), self._forearm[1]
 
     def _ahead(self, theta: Array) -> Array:
         """Return how far the wrist centre is in front of axis 1, in mm, along the turned X axis."""
@@ -239,17 +171,6 @@ class CentralWrist:
         )
         return ahead
 
-    def _wrist_centre(self, theta: Array) -> Array:
-        """Return the wrist centre relative to $TIRORO, in mm."""
-        lean, both = theta[..., 1], theta[..., 1] + theta[..., 2]
-        forward, aside, up = self._forearm
-        ahead = self._ahead(theta)
-        sine, cosine = np.sin(theta[..., 0]), np.cos(theta[..., 0])
-        height = -self.machine.length_b * np.sin(lean) - forward * np.sin(both) + up * np.cos(both)
-        return np.stack(
-            (ahead * cosine - aside * sine, ahead * sine + aside * cosine, height), axis=-1
-        )
-
     def _check_lengths(self) -> None:
         machine = self.machine
         if machine.length_b < _MARGIN:
@@ -257,21 +178,16 @@ class CentralWrist:
         if math.hypot(self._forearm[0], self._forearm[2]) < _MARGIN:
             raise MachineDataError("X and Z of $TX3P3 are 0: the arm has no forearm")
 
-    def _wrist(self) -> tuple[float, float]:
+    def _forearm_axis(self) -> tuple[float, float]:
         """Return the sense of axis 4 and the zero position of the wrist.
 
         The sense is 1 if axis 4 points along the forearm, -1 if against it. The zero position is
         the angle of the first wrist axis about axis 4 in radians.
         """
-        upright = _about_y(np.array(-math.pi / 2)) @ self._mount
+        upright = _about_y(np.array(-math.pi / 2)) @ self._frames[3, :3, :3]
         along = math.copysign(1.0, float(upright[2, 2]))
         turned = np.diag([along, 1.0, along]) @ upright
         return along, math.atan2(turned[1, 0], turned[0, 0])
-
-
-def _about_x(degrees: float) -> Array:
-    sine, cosine = sine_cosine(degrees)
-    return np.array([[1.0, 0.0, 0.0], [0.0, cosine, -sine], [0.0, sine, cosine]])
 
 
 def _about_y(radians: Array) -> Array:

@@ -38,5 +38,4 @@ def kinematics_of(machine: MachineData) -> Kinematics:
         if machine.palletising is Palletising.LINKED_A5:
             raise MachineDataError("an axis 5 that is guided by a parallelogram, in an odd wrist")
         return NumericKinematics(machine)
-    arm = CentralWrist(machine)
-    return Palletiser(arm) if machine.palletising is not None else arm
+    return CentralWrist(machine) if machine.palletising is None else Palletiser(machine)

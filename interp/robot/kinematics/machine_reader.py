@@ -11,13 +11,7 @@ from typing import Any
 
 from interp.robot.kinematics.carrier import Carrier
 from interp.robot.kinematics.chain import Chain, Joint
-from interp.robot.kinematics.data_list import (
-    DataListError,
-    Key,
-    Value,
-    located,
-    read_data_list,
-)
+from interp.robot.kinematics.data_list import DataListError, Key, Value, located, read_data_list
 from interp.robot.kinematics.machine_data import (
     DEFAULT_ACCELERATION,
     DEFAULT_VELOCITY,

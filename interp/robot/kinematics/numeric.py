@@ -5,8 +5,7 @@ kinematics is the Levenberg-Marquardt method with the damping of Sugihara (2011)
 positions at once. An arm with fewer than six joints reaches a pose only if the pose is compatible
 with it, up to a rotation of `_OFF`.
 
-Lengths are in fractions of the size of the arm, angles in radians. A joint that is missing or fixed
-moves along no axis.
+Joints are in fractions of the size of the arm and radians.
 
 Status and Turn are defined as for other arms, with axis 5 as the wrist. No source says how they are
 defined for such arms (unconfirmed).
@@ -14,18 +13,15 @@ defined for such arms (unconfirmed).
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from interp.robot.kinematics.chain import Joint
-from interp.robot.kinematics.kinematics import LARGEST_STEP, Array, matrix_of, wrapped
+from interp.robot.kinematics.kinematics import LARGEST_STEP, Array, Kinematics, wrapped
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData, MachineDataError
 from interp.values.faults import Fault
-from interp.values.poses import IDENTITY
 
 _STARTS = 96
 _ROUNDS = 40
@@ -36,51 +32,32 @@ _LEAST_DAMPING = 1e-13
 _MET, _OFF = 1e-7, 0.002
 """Radians by which an arm may miss an orientation, with six joints and with fewer."""
 _BESIDE = 0.01  # the fraction of the size by which it may miss a position then, for a radian
-_TURN = 1e-9  # degrees of rounding
 _COARSE = 32
 
 
-class NumericKinematics:
-    """The kinematics of one machine, as a `interp.robot.kinematics.kinematics.Kinematics`.
+class NumericKinematics(Kinematics):
+    """The kinematics of one machine.
 
     Raises `MachineDataError` for a chain without joints, or with more than six.
     """
 
-    has_wrist_singularity = False
-
     def __init__(self, machine: MachineData) -> None:
-        joints, end = machine.chain.joints, machine.chain.end
-        if not 0 < len(joints) <= ROBOT_AXES:
-            raise MachineDataError(f"a chain of {len(joints)} joints; 1 to 6 can be moved")
-        self.machine = machine
-        missing = Joint("", IDENTITY, (0.0, 0.0, 0.0))
-        joints = (*joints, *(ROBOT_AXES - len(joints)) * [missing])
-        self._frames = np.array([matrix_of(frame) for frame in (*(j.frame for j in joints), end)])
+        count = len(machine.chain.joints)
+        if not 0 < count <= ROBOT_AXES:
+            raise MachineDataError(f"a chain of {count} joints; 1 to 6 can be moved")
+        super().__init__(machine)
         self._size = max(float(np.linalg.norm(self._frames[:, :3, 3], axis=1).sum()), 1.0)
-        self._frames[:, :3, 3] /= self._size
-        axes = np.array([joint.axis for joint in joints])
-        if machine.palletising is not None:
-            axes[3] = 0.0
-        self._linear = np.array([joint.is_linear for joint in joints])
-        self._slides, self._turns = axes * self._linear[:, None], axes * ~self._linear[:, None]
-        self._moves = axes.any(axis=1)
+        self._moves = (self._slides + self._turns).any(axis=1)
         self._units = np.where(self._linear, 1.0 / self._size, math.pi / 180.0)
         self._tolerance = _MET if self._moves.all() else _OFF
         self.elbow = self._stretched()
 
     def coupled(self, axes: npt.ArrayLike) -> Array:
-        """Return the axes with those that do not move at 0."""
+        """Return the axes with those that do not move at 0.
+
+        An incompatible orientation is handled in the solution.
+        """
         return np.where(self._moves, np.asarray(axes, dtype=np.float64), 0.0)
-
-    def about_tips(self, poses: Array, _tool: Array, /) -> Array:
-        """Return the poses as they are; an incompatible orientation is handled in the solution."""
-        return poses
-
-    def forward(self, axes: npt.ArrayLike) -> Array:
-        """See `interp.robot.kinematics.kinematics.Kinematics.forward`."""
-        pose = self._frames_at(self._joints(axes))[-1]
-        pose[..., :3, 3] *= self._size
-        return pose
 
     def inverse(self, poses: npt.ArrayLike) -> Array:
         """Return the solutions found from starts spread at random over the range of the axes.
@@ -116,24 +93,11 @@ class NumericKinematics:
         references = np.stack([np.interp(between, places, c) for c in known.T], axis=-1)
         return _found(self.inverse_near(poses, references))
 
-    def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
-        """See `interp.robot.kinematics.kinematics.Kinematics.status`."""
-        given = self.coupled(axes)
-        behind = self._wrist(given)[..., 0] < -1e-7
-        bent = given[..., 2] >= self.elbow - _TURN
-        found: npt.NDArray[np.int64] = behind + 2 * bent + 4 * (given[..., 4] < -_TURN)
-        return found
-
-    def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
-        """See `interp.robot.kinematics.kinematics.Kinematics.distance_to_axis_1`."""
-        x, y, _ = np.moveaxis(self._wrist(axes), -1, 0)
-        return np.where(self._linear[0], math.inf, np.hypot(x, y))
-
     # ------------------------------------------------------------------------------- the solution
 
     def _solve(self, poses: Array, starts: Array) -> Array:
         """Return the axes ``(n, 6)`` that reach poses, from starts; NaN if not found."""
-        joints = self._joints(starts)
+        joints = self.coupled(starts) * self._units
         for _ in range(_ROUNDS):
             missing, slopes = self._missing(poses, joints)
             damping = 0.5 * (missing**2).sum(axis=1) + _LEAST_DAMPING
@@ -154,47 +118,28 @@ class NumericKinematics:
         """
         from scipy.spatial.transform import Rotation
 
-        *frames, pose = self._frames_at(joints)
+        *frames, pose = self._frames_at(joints / self._units)
         at = np.stack(frames, axis=1)
         turn = Rotation.from_matrix(poses[:, :3, :3] @ np.swapaxes(pose[:, :3, :3], 1, 2))
-        way = poses[:, :3, 3] / self._size - pose[:, :3, 3]
+        way = (poses[:, :3, 3] - pose[:, :3, 3]) / self._size
         slides, turns = (
             (at[..., :3, :3] @ axes[:, :, None])[..., 0] for axes in (self._slides, self._turns)
         )
-        shifts = slides + np.cross(turns, pose[:, None, :3, 3] - at[..., :3, 3])
+        arms = (pose[:, None, :3, 3] - at[..., :3, 3]) / self._size
+        shifts = slides + np.cross(turns, arms)
         return (
             np.concatenate((way, turn.as_rotvec()), axis=1),
             np.concatenate((shifts, turns), axis=2),
         )
 
-    def _joints(self, axes: npt.ArrayLike) -> Array:
-        return self.coupled(axes) * self._units
-
-    def _frames_at(self, joints: Array) -> list[Array]:
-        """Return the frames ``(..., 4, 4)`` of joints that have moved, and of the flange."""
-        from scipy.spatial.transform import Rotation
-
-        ways = joints[..., None]
-        turns = Rotation.from_rotvec((ways * self._turns).reshape(-1, 3)).as_matrix()
-        moves = np.zeros((*joints.shape, 4, 4))
-        moves[..., :3, :3] = turns.reshape(*joints.shape, 3, 3)
-        moves[..., :3, 3] = ways * self._slides
-        moves[..., 3, 3] = 1.0
-        found = list(itertools.accumulate(np.moveaxis(self._frames[:-1] @ moves, -3, 0), np.matmul))
-        return [*found, found[-1] @ self._frames[-1]]
-
     # ------------------------------------------------------------------------------- the geometry
 
-    def _wrist(self, axes: npt.ArrayLike) -> Array:
-        """Return the place of axis 5, or of the last one, relative to axis 1 turned by A1, in mm.
-
-        If that one slides, its place moves with it.
-        """
-        joints = self._joints(axes)
-        joints[..., 0] = 0.0
-        wrist = np.linalg.inv(self._frames[0]) @ self._frames_at(joints)[4]
-        found: Array = wrist[..., :3, 3] * self._size
-        return found
+    def _wrist(self, axes: Array) -> tuple[Array, Array]:
+        """Return the place of axis 5, or of the last one; if that one slides, it moves with it."""
+        turned = axes.copy()
+        turned[..., 0] = 0.0
+        wrist = np.linalg.inv(self._frames[0]) @ self._frames_at(turned)[4]
+        return wrist[..., 0, 3], np.where(self._linear[0], math.inf, wrist[..., 1, 3])
 
     def _stretched(self) -> float:
         """Return the angle of A3 in degrees at which axis 5 is farthest from axis 2."""

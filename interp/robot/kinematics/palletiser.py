@@ -10,14 +10,13 @@ $ORI_CHECK, which would make it check them, is 0 as delivered.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from interp.robot.kinematics.central_wrist import CentralWrist
-from interp.robot.kinematics.kinematics import Array, continued, matrix_of, nearest_turns
-from interp.robot.kinematics.machine_data import MachineDataError, Palletising
+from interp.robot.kinematics.kinematics import Array, nearest_turns
+from interp.robot.kinematics.machine_data import MachineData, MachineDataError, Palletising
 
 _SOLUTIONS = 4
 _TOLERANCE = 1e-9  # mm, or of a cosine
@@ -27,27 +26,21 @@ _ROUNDS = 100  # more than a few are needed only near axis 1
 _BESIDE = 1e-6  # mm by which the tip may be missed
 
 
-class Palletiser:
-    """The kinematics of a palletiser, as a `interp.robot.kinematics.kinematics.Kinematics`.
+class Palletiser(CentralWrist):
+    """The kinematics of a palletiser.
 
-    ``arm`` is the kinematics of the same machine with all axes free. Raises `MachineDataError` if
-    the wrist or flange is not in the plane of the arm.
+    Raises `MachineDataError` if the wrist or flange is not in the plane of the arm.
     """
 
     has_wrist_singularity = False
 
-    def __init__(self, arm: CentralWrist) -> None:
-        machine = arm.machine
-        self.machine = machine
-        self.elbow = arm.elbow
-        self._arm = arm
+    def __init__(self, machine: MachineData) -> None:
+        super().__init__(machine)
         self._check_plane()
         self._is_linked = machine.palletising is Palletising.LINKED_A5
-        self._to_inner = matrix_of(machine.tiroro.inverse())
-        self._from_inner = matrix_of(machine.tiroro)
-        self._after = matrix_of(machine.tflwp)[:3, :3]
-        twist = math.copysign(1.0, math.sin(math.radians(machine.dh_4.alpha)))
-        self._senses = -twist * machine.axes[4].direction, float(machine.axes[5].direction)
+        self._from_inner, self._after = self._frames[0], self._frames[-1, :3, :3]
+        twist = math.copysign(1.0, machine.dh_4.alpha)
+        self._guides = -twist * machine.axes[4].direction, float(machine.axes[5].direction)
         forward, _, down = (-part for part in machine.tx3p3.rows[2][:3])
         self._level = math.degrees(math.atan2(forward, down))  # of axis 5, with A2 and A3 at 0
         self._pitch = -machine.tx3p3.rows[1][1] * np.array(
@@ -69,7 +62,7 @@ class Palletiser:
         found[..., 3] = 0.0
         if self._is_linked:
             pitch = found[..., 1:3] @ self._pitch
-            found[..., 4] = (self._level + pitch) * self._senses[0]
+            found[..., 4] = (self._level + pitch) * self._guides[0]
         return found
 
     def about_tips(self, poses: Array, tool: Array, /) -> Array:
@@ -93,36 +86,18 @@ class Palletiser:
         reached[off > _BESIDE] = math.nan
         return reached
 
-    def forward(self, axes: npt.ArrayLike) -> Array:
-        """See `interp.robot.kinematics.kinematics.Kinematics.forward`."""
-        return self._arm.forward(self.coupled(axes))
-
     def inverse(self, poses: npt.ArrayLike) -> Array:
         """Return four solutions, which differ in shoulder and elbow; A4 is 0 in all of them."""
         reached = self._reachable(np.asarray(poses, dtype=np.float64))
-        main = self._arm.inverse(reached)[..., :_SOLUTIONS, :3]
+        main = super().inverse(reached)[..., :_SOLUTIONS, :3]
         return self._with_wrist(main, reached[..., None, :, :])
 
     def inverse_near(self, poses: Array, references: Array) -> Array:
         """See `interp.robot.kinematics.kinematics.Kinematics.inverse_near`."""
         reached = self._reachable(poses)
-        main = self._arm.inverse_near(reached, references)[:, :3]
+        main = super().inverse_near(reached, references)[:, :3]
         found = self._with_wrist(main, reached)
         return nearest_turns(found, references)
-
-    def inverse_along(self, poses: Array, start: Sequence[float]) -> Array | None:
-        """See `interp.robot.kinematics.kinematics.Kinematics.inverse_along`."""
-        references = np.array(start, dtype=np.float64)
-        found = self.inverse_near(poses, np.tile(references, (len(poses), 1)))
-        return continued(references, found)
-
-    def status(self, axes: npt.ArrayLike) -> npt.NDArray[np.int64]:
-        """See `interp.robot.kinematics.kinematics.Kinematics.status`."""
-        return self._arm.status(self.coupled(axes))
-
-    def distance_to_axis_1(self, axes: npt.ArrayLike) -> Array:
-        """See `interp.robot.kinematics.kinematics.Kinematics.distance_to_axis_1`."""
-        return self._arm.distance_to_axis_1(axes)
 
     # ------------------------------------------------------------------------------- the geometry
 
@@ -130,7 +105,7 @@ class Palletiser:
         """Return rotations ``(..., 3, 3)`` of the wrist relative to $TIRORO, axes 4 to 6 at 0."""
         still = axes.copy()
         still[..., 3:] = 0.0
-        flange = self._to_inner[:3, :3] @ self._arm.forward(still)[..., :3, :3]
+        flange = self._to_inner[:3, :3] @ self._frames_at(still)[-1][..., :3, :3]
         found: Array = flange @ self._after.T
         return found
 
@@ -142,8 +117,8 @@ class Palletiser:
         wrist = np.swapaxes(self._unturned(axes), -1, -2) @ wanted
         a5 = np.arctan2(wrist[..., 0, 2], wrist[..., 2, 2])
         a6 = np.arctan2(wrist[..., 1, 0], wrist[..., 1, 1])
-        axes[..., 4] = np.degrees(a5) * self._senses[0]
-        axes[..., 5] = np.degrees(a6) * self._senses[1]
+        axes[..., 4] = np.degrees(a5) * self._guides[0]
+        axes[..., 5] = np.degrees(a6) * self._guides[1]
         axes[..., 3] = np.where(np.isnan(main[..., 0]), math.nan, 0.0)
         return axes
 
@@ -158,10 +133,9 @@ class Palletiser:
             wanted = np.broadcast_to(np.array([0.0, 0.0, -1.0]), axis.shape)
         else:
             x, y = inner[..., 0, 3], inner[..., 1, 3]
-            away = np.hypot(x, y)
-            is_on_axis = away < _FLAT
-            away = np.where(is_on_axis, 1.0, away)
-            normal = np.stack((-y / away, x / away, np.zeros_like(x)), axis=-1)
+            is_on_axis = np.hypot(x, y) < _FLAT
+            turn = np.arctan2(y, x)
+            normal = np.stack((-np.sin(turn), np.cos(turn), np.zeros_like(turn)), axis=-1)
             wanted = axis - (axis * normal).sum(axis=-1, keepdims=True) * normal
             wanted[is_on_axis, :2] = 0.0  # in every such plane
         length = np.linalg.norm(wanted, axis=-1, keepdims=True)
@@ -179,15 +153,12 @@ def _least_turn(before: Array, after: Array) -> Array:
 
     NaN for opposite vectors.
     """
+    from scipy.spatial.transform import Rotation
+
     cross = np.cross(before, after)
-    cosine = (before * after).sum(axis=-1)[..., None, None]
-    skew = np.zeros((*before.shape[:-1], 3, 3))
-    skew[..., 0, 1], skew[..., 0, 2], skew[..., 1, 2] = (
-        -cross[..., 2],
-        cross[..., 1],
-        -cross[..., 0],
-    )
-    skew -= np.swapaxes(skew, -1, -2)
-    share = 1.0 / np.where(cosine > _FLAT - 1.0, 1.0 + cosine, math.nan)
-    turn: Array = np.eye(3) + skew + skew @ skew * share
-    return turn
+    cosine = (before * after).sum(axis=-1, keepdims=True)
+    sine = np.linalg.norm(cross, axis=-1, keepdims=True)
+    angle = np.where(cosine > _FLAT - 1.0, np.arctan2(sine, cosine), math.nan)
+    vectors = cross * np.divide(angle, sine, out=angle.copy(), where=sine > 0.0)
+    turn: Array = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
+    return turn.reshape(*before.shape, 3)

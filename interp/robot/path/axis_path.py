@@ -8,6 +8,7 @@ axes themselves are always exact.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
@@ -140,6 +141,20 @@ class SplineAxes:
         where = self.start + u * self.length
         first, second, third = (self.spline(where, n) * self.length**n for n in (1, 2, 3))
         return first, second, third
+
+
+def splined(spans: Sequence[float], points: Array) -> list[AxisPath]:
+    """Return the axes between points ``(n, axes)`` that lie so far apart, in u of a common spline.
+
+    Its second derivative is 0 at both ends. Between two points it is a line.
+    """
+    if len(spans) == 1:
+        return [LinearAxes(*points)]
+    from scipy.interpolate import CubicSpline
+
+    knots = np.cumsum([0.0, *spans])
+    spline = CubicSpline(knots, points, bc_type="natural")
+    return [SplineAxes(spline, *part) for part in zip(knots.tolist(), spans, strict=False)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -45,6 +45,13 @@ class Circle:
         phi = (u * self.angle)[:, None]
         return self.centre + self.radius * (np.cos(phi) * self.first + np.sin(phi) * self.second)
 
+    def tangents(self, u: Array) -> Array:
+        """Return the derivatives of the points by u in mm, ``(n, 3)``."""
+        phi = (u * self.angle)[:, None]
+        onward = np.cos(phi) * self.second - np.sin(phi) * self.first
+        tangents: Array = self.radius * self.angle * onward
+        return tangents
+
 
 def circle_through(
     start: Array, auxiliary: Array, end: Array, degrees: float | None = None

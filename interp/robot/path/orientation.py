@@ -17,7 +17,6 @@ import numpy.typing as npt
 from interp.robot.kinematics.kinematics import Array
 
 _PARALLEL = 1e-12
-_MANY = 3  # dimensions of a stack of matrices
 _DIRECTION = np.array([1.0, 0.0, 0.0])
 
 
@@ -55,12 +54,11 @@ class Turning:
 
     def at(self, u: Array) -> Array:
         """See `Orientation.at`."""
-        turned = self.start
-        if self.swivel:
-            turned = turned @ about(self.axis, u * self.swivel)
-        if self.twist:
-            turned = turned @ about(_DIRECTION, u * self.twist)
-        return turned if turned.ndim == _MANY else np.tile(turned, (len(u), 1, 1))
+        turned = np.tile(self.start, (len(u), 1, 1))
+        for axis, angle in ((self.axis, self.swivel), (_DIRECTION, self.twist)):
+            if angle:  # most tools do not turn
+                turned = turned @ about(axis, u * angle)
+        return turned
 
 
 @dataclass(frozen=True, slots=True, eq=False)

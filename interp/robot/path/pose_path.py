@@ -13,27 +13,20 @@ from typing import Protocol
 import numpy as np
 
 from interp.robot.kinematics.kinematics import Array
-from interp.robot.path.arc_length import ArcLength
-from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation
 from interp.robot.path.transition import Transition
 
 
-class PosePath(Protocol):
-    """A path of poses."""
+class PathShape(Protocol):
+    """A path of points."""
 
     @property
     def length(self) -> float:
         """The length of the path in mm."""
         ...
 
-    @property
-    def angles(self) -> tuple[float, float]:
-        """The angles by which the tool swivels, and turns about its direction, in radians."""
-        ...
-
-    def at(self, u: Array) -> tuple[Array, Array]:
-        """Return positions and rotations at parameters ``(n,)``."""
+    def at(self, u: Array) -> Array:
+        """Return positions at parameters ``(n,)``."""
         ...
 
     def tangents(self, u: Array) -> Array:
@@ -42,61 +35,52 @@ class PosePath(Protocol):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class StraightLine:
+class Line:
     """A straight line."""
 
     start: Array
     end: Array
-    orientation: Orientation
 
     @property
     def length(self) -> float:
-        """See `PosePath.length`."""
+        """See `PathShape.length`."""
         return float(np.linalg.norm(self.end - self.start))
 
-    @property
-    def angles(self) -> tuple[float, float]:
-        """See `PosePath.angles`."""
-        return self.orientation.swivel, self.orientation.rotation
-
-    def at(self, u: Array) -> tuple[Array, Array]:
-        """See `PosePath.at`."""
-        return self.start + u[:, None] * (self.end - self.start), self.orientation.at(u)
+    def at(self, u: Array) -> Array:
+        """See `PathShape.at`."""
+        points: Array = self.start + u[:, None] * (self.end - self.start)
+        return points
 
     def tangents(self, u: Array) -> Array:
-        """See `PosePath.tangents`."""
+        """See `PathShape.tangents`."""
         tangents: Array = np.zeros((len(u), 3)) + (self.end - self.start)
         return tangents
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Arc:
-    """An arc of a circle."""
+class OrientedPath:
+    """A path of points, and the orientation along it."""
 
-    circle: Circle
+    shape: PathShape
     orientation: Orientation
 
     @property
     def length(self) -> float:
-        """See `PosePath.length`."""
-        return self.circle.length
+        """The length of the path in mm."""
+        return self.shape.length
 
     @property
     def angles(self) -> tuple[float, float]:
-        """See `PosePath.angles`."""
+        """The angles by which the tool swivels, and turns about its direction, in radians."""
         return self.orientation.swivel, self.orientation.rotation
 
     def at(self, u: Array) -> tuple[Array, Array]:
-        """See `PosePath.at`."""
-        return self.circle.at(u), self.orientation.at(u)
+        """Return positions and rotations at parameters ``(n,)``."""
+        return self.shape.at(u), self.orientation.at(u)
 
     def tangents(self, u: Array) -> Array:
-        """See `PosePath.tangents`."""
-        circle = self.circle
-        phi = (u * circle.angle)[:, None]
-        onward = np.cos(phi) * circle.second - np.sin(phi) * circle.first
-        tangents: Array = circle.radius * circle.angle * onward
-        return tangents
+        """Return the derivatives of the positions by u in mm."""
+        return self.shape.tangents(u)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,20 +95,8 @@ class Blend:
     second: PosePath
     transition: Transition
 
-    @property
-    def length(self) -> float:
-        """See `PosePath.length`."""
-        return ArcLength(self.tangents).length
-
-    @property
-    def angles(self) -> tuple[float, float]:
-        """See `PosePath.angles`."""
-        (a, b), (c, d) = self.first.angles, self.second.angles
-        before, after = self.transition.before, self.transition.after
-        return a * before + c * after, b * before + d * after
-
     def at(self, u: Array) -> tuple[Array, Array]:
-        """See `PosePath.at`."""
+        """See `OrientedPath.at`."""
         one, other = self.transition.at(u)
         (*before, corner), (*turned, turn) = self.first.at(np.append(one, 1.0))
         behind, onward = self.second.at(other)
@@ -132,12 +104,15 @@ class Blend:
         return np.array(before) - corner + behind, rotations
 
     def tangents(self, u: Array) -> Array:
-        """See `PosePath.tangents`."""
+        """See `OrientedPath.tangents`."""
         one, other = self.transition.at(u)
         (leaving, *_), (joining, *_) = self.transition.rates(u)
         before = leaving[:, None] * self.first.tangents(one)
         tangents: Array = before + joining[:, None] * self.second.tangents(other)
         return tangents
+
+
+PosePath = OrientedPath | Blend
 
 
 def poses_of(pose_path: PosePath, u: Array) -> Array:

@@ -13,7 +13,8 @@ through the points is not.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +23,7 @@ from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation, turning
-from interp.robot.path.pose_path import Arc, PosePath, StraightLine
+from interp.robot.path.pose_path import Line, OrientedPath, PathShape
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import RotationSpline
@@ -58,20 +59,16 @@ class Segment:
     @property
     def chord(self) -> float:
         """The distance between its ends in mm, or the length of the arc."""
-        if self.circle is not None:
-            return self.circle.length
-        return float(np.linalg.norm(self.end.position - self.start.position))
+        return self.shape.length
 
-    def shape(self) -> StraightLine | Arc:
-        """Return the line or arc of an exact segment, with a constant orientation."""
-        keeps = turning(self.start.rotation, self.start.rotation)
-        if self.circle is not None:
-            return Arc(self.circle, keeps)
-        return StraightLine(self.start.position, self.end.position, keeps)
+    @property
+    def shape(self) -> Circle | Line:
+        """The line or arc of an exact segment."""
+        return self.circle or Line(self.start.position, self.end.position)
 
     def tangent(self, u: float) -> Array:
         """Return the unit tangent of an exact segment."""
-        (tangent,) = self.shape().tangents(np.array([u]))
+        (tangent,) = self.shape.tangents(np.array([u]))
         direction: Array = tangent / np.linalg.norm(tangent)
         return direction
 
@@ -99,41 +96,30 @@ class _Swept:
         return rotations
 
 
-class FreeSegment:
-    """An SPL segment: a quintic polynomial, reparametrised by its length.
+class FreeCurve:
+    """The path of an SPL segment: a quintic polynomial, reparametrised by its length.
 
     ``ends`` has position, first and second derivative at both ends, ``(2, 3, 3)``, by a parameter
     whose range is ``span``.
     """
 
-    def __init__(self, ends: Array, span: float, orientation: Orientation) -> None:
+    def __init__(self, ends: Array, span: float) -> None:
         from scipy.interpolate import BPoly, CubicSpline
 
         self._curve = BPoly.from_derivatives(_ENDS, ends * span ** np.arange(3.0)[:, None])
         self._slopes = self._curve.derivative()
-        self._orientation = orientation
         self.way = ArcLength(self._slopes)
         self.length = self.way.length
         grid = np.linspace(0.0, 1.0, _SAMPLES)
         self._parameter = CubicSpline(self.way.at(grid) / self.length, grid)
 
-    @property
-    def angles(self) -> tuple[float, float]:
-        """See `interp.robot.path.pose_path.PosePath.angles`; here the largest rate over u."""
-        return self._orientation.swivel, self._orientation.rotation
-
-    def turned(self, orientation: Orientation) -> FreeSegment:
-        """Return the same curve with another orientation."""
-        other = object.__new__(FreeSegment)
-        other.__dict__.update(self.__dict__, _orientation=orientation)
-        return other
-
-    def at(self, u: Array) -> tuple[Array, Array]:
-        """See `interp.robot.path.pose_path.PosePath.at`."""
-        return self._curve(self._parameter(u)), self._orientation.at(u)
+    def at(self, u: Array) -> Array:
+        """See `interp.robot.path.pose_path.PathShape.at`."""
+        points: Array = self._curve(self._parameter(u))
+        return points
 
     def tangents(self, u: Array) -> Array:
-        """See `interp.robot.path.pose_path.PosePath.tangents`."""
+        """See `interp.robot.path.pose_path.PathShape.tangents`."""
         slopes = self._slopes(self._parameter(u))
         tangents: Array = slopes / np.linalg.norm(slopes, axis=1)[:, None] * self.length
         return tangents
@@ -151,37 +137,24 @@ def chains_of(segments: Sequence[Segment]) -> list[list[Segment]]:
     return chains
 
 
-def pose_paths_of(chain: Sequence[Segment]) -> list[PosePath]:
+def pose_paths_of(chain: Sequence[Segment]) -> list[OrientedPath]:
     """Return the paths of the segments of one chain, which join smoothly."""
     start = chain[0].start
     if chain[0].chord < _SHORT:
         turned = turning(start.rotation, chain[0].end.rotation)
-        return [StraightLine(start.position, start.position, turned)]
-    still = turning(start.rotation, start.rotation)
-    shapes: list[StraightLine | Arc | FreeSegment] = []
-    place = 0
-    while place < len(chain):
-        if chain[place].is_exact:
-            shapes.append(chain[place].shape())
-            place += 1
+        return [OrientedPath(Line(start.position, start.position), turned)]
+    shapes: list[PathShape] = []
+    for is_exact, group in groupby(chain, key=lambda segment: segment.is_exact):
+        run, place = [*group], len(shapes)
+        if is_exact:
+            shapes += (segment.shape for segment in run)
             continue
-        last = place
-        while last < len(chain) and not chain[last].is_exact:
-            last += 1
+        behind = place + len(run)
         before = chain[place - 1] if place else None
-        following = chain[last] if last < len(chain) else None
-        ends, spans = _run(chain[place:last], before, following)
-        shapes += [
-            FreeSegment(ends[number : number + 2], span, still) for number, span in enumerate(spans)
-        ]
-        place = last
-    swept = _orientations(chain, [shape.length for shape in shapes], still)
-    return [
-        shape.turned(orientation)
-        if isinstance(shape, FreeSegment)
-        else replace(shape, orientation=orientation)
-        for shape, orientation in zip(shapes, swept, strict=True)
-    ]
+        ends, spans = _run(run, before, chain[behind] if behind < len(chain) else None)
+        shapes += (FreeCurve(ends[n : n + 2], span) for n, span in enumerate(spans))
+    turns = _orientations(chain, [shape.length for shape in shapes])
+    return [OrientedPath(*path) for path in zip(shapes, turns, strict=True)]
 
 
 def _is_corner(before: Segment, segment: Segment) -> bool:
@@ -218,12 +191,8 @@ def _run(
     return ends, spans
 
 
-def _orientations(
-    chain: Sequence[Segment], lengths: Sequence[float], still: Orientation
-) -> Sequence[Orientation]:
+def _orientations(chain: Sequence[Segment], lengths: Sequence[float]) -> Sequence[Orientation]:
     rotations = np.array([chain[0].start.rotation, *(segment.end.rotation for segment in chain)])
-    if np.allclose(rotations, rotations[0], rtol=0.0, atol=1e-12):
-        return [still] * len(chain)
     knots = np.concatenate(([0.0], np.cumsum(lengths)))
     from scipy.spatial.transform import Rotation, RotationSpline
 

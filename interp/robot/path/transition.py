@@ -13,7 +13,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -29,38 +28,12 @@ _BEHIND = 1e-9
 """Offset in u after a break; rounding never moves it to before the break."""
 
 
-class Transition(Protocol):
-    """The parameters of both paths in a blend; ``before`` and ``after`` are the shares it uses."""
-
-    @property
-    def before(self) -> float:
-        """The share of the first path that the blend uses."""
-        ...
-
-    @property
-    def after(self) -> float:
-        """The share of the second path that the blend uses."""
-        ...
-
-    @property
-    def breaks(self) -> Array:
-        """The values of u at which a third derivative jumps, moved slightly to after the jump."""
-        ...
-
-    def at(self, u: Array) -> tuple[Array, Array]:
-        """Return the parameters ``(n,)`` of the first and of the second path."""
-        ...
-
-    def rates(self, u: Array) -> tuple[Array, Array]:
-        """Return the first to third derivatives of both by u, each ``(3, n)``."""
-        ...
-
-
 @dataclass(frozen=True, eq=False)
 class Rounding:
     """A rounded corner; if the paths continue straight, a line at constant speed.
 
-    ``weights`` are the lengths of both sides of the zone, in the same unit. Both sides follow
+    ``before`` and ``after`` are shares of both paths, ``weights`` the lengths of both sides of the
+    zone, in the same unit. Both sides follow
     ``h = (4 - slope)·v³ + (slope - 3)·v⁴`` over a parameter v. With a slope of 1, a blend between
     two lines has the apex of a parabola and differs from it by at most 0.3 per cent of the zone,
     but its curvature rises quickly. With a slope of 2 the curvature rises over the whole zone. u is
@@ -76,16 +49,16 @@ class Rounding:
 
     @property
     def breaks(self) -> Array:
-        """See `Transition.breaks`."""
+        """The values of u at which a third derivative jumps: none."""
         return np.empty(0)
 
     def at(self, u: Array) -> tuple[Array, Array]:
-        """See `Transition.at`."""
+        """Return the parameters ``(n,)`` of the first and of the second path."""
         left, joined = _side_rates(self._inner(u), self.slope, 0)
         return 1.0 - self.before * left, self.after * joined
 
     def rates(self, u: Array) -> tuple[Array, Array]:
-        """See `Transition.rates`."""
+        """Return the first to third derivatives of both by u, each ``(3, n)``."""
         return _rates(self, u.tobytes())
 
     def rates_at(self, u: Array) -> tuple[Array, Array]:
@@ -149,17 +122,17 @@ class Overlap:
 
     @property
     def before(self) -> float:
-        """See `Transition.before`."""
+        """The share of the first path that the blend uses."""
         return self.ending.length
 
     @property
     def after(self) -> float:
-        """See `Transition.after`."""
+        """The share of the second path that the blend uses."""
         return self.starting.length
 
     @property
     def breaks(self) -> Array:
-        """See `Transition.breaks`."""
+        """The values of u at which a third derivative jumps, moved slightly to after the jump."""
         ending, starting = (
             np.array([knot[0] for knot in each.knots]) for each in (self.ending, self.starting)
         )
@@ -167,12 +140,12 @@ class Overlap:
         return np.minimum(times / self.duration + _BEHIND, 1.0)
 
     def at(self, u: Array) -> tuple[Array, Array]:
-        """See `Transition.at`."""
+        """Return the parameters ``(n,)`` of the first and of the second path."""
         one, other = self._both(u)
         return 1.0 - self.before + one[0], other[0]
 
     def rates(self, u: Array) -> tuple[Array, Array]:
-        """See `Transition.rates`."""
+        """Return the first to third derivatives of both by u, each ``(3, n)``."""
         return _rates(self, u.tobytes())
 
     def rates_at(self, u: Array) -> tuple[Array, Array]:
@@ -192,6 +165,10 @@ class Overlap:
     def _delay(self) -> float:
         """The time in s after which the second motion begins."""
         return self.duration - self.starting.duration
+
+
+#: The parameters of both paths in a blend.
+Transition = Rounding | Overlap
 
 
 def chained(

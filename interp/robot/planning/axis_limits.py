@@ -9,7 +9,7 @@ import numpy as np
 
 from interp.robot.arm import Load
 from interp.robot.kinematics.kinematics import Array
-from interp.robot.kinematics.machine_data import Axis, AxisDynamics, AxisKind, MachineData
+from interp.robot.kinematics.machine_data import AxisDynamics, AxisKind, MachineData
 from interp.robot.planning.torque_limits import TorqueLimits
 
 _ROTARY, _LINEAR = AxisDynamics.ramped(180.0), AxisDynamics.ramped(1000.0)
@@ -30,53 +30,42 @@ class AxisLimits:
 
     def equals(self, other: AxisLimits) -> bool:
         """Return whether all limits are equal."""
-        names = ("velocity", "acceleration", "jerk")
-        are_equal = all(np.array_equal(getattr(self, n), getattr(other, n)) for n in names)
+        are_equal = all(map(np.array_equal, self._rates, other._rates))
         return are_equal and self.torques == other.torques
 
     def carrying(self, loads: Mapping[str, Load]) -> AxisLimits:
         """Return the limits of the arm with these loads."""
-        if self.torques is None:
-            return self
-        return replace(self, torques=self.torques.carrying(loads))
+        return replace(self, torques=self.torques and self.torques.carrying(loads))
 
-    def scaled(
-        self, velocity: Sequence[float], acceleration: Sequence[float], jerk: Sequence[float]
-    ) -> AxisLimits:
-        """Return limits scaled by percentages; one outside 0 to 100 counts as 100 [MOT-02]."""
-        count = len(self.velocity)
-        return AxisLimits(
-            self.velocity * _shares(velocity[:count]),
-            self.acceleration * _shares(acceleration[:count]),
-            self.jerk * _shares(jerk[:count]),
-            self.torques,
-        )
+    def scaled(self, *percents: Sequence[float]) -> AxisLimits:
+        """Return limits of speed, acceleration and jerk scaled by percentages.
+
+        One outside 0 to 100 counts as 100 [MOT-02].
+        """
+        return self._changed(np.multiply, [_shares(one[: len(self.velocity)]) for one in percents])
 
     def merged(self, other: AxisLimits, choose: Callable[[Array, Array], Array]) -> AxisLimits:
         """Return the lower or the higher limit for each axis; torques are those of the first."""
-        return AxisLimits(
-            choose(self.velocity, other.velocity),
-            choose(self.acceleration, other.acceleration),
-            choose(self.jerk, other.jerk),
-            self.torques,
-        )
+        return self._changed(choose, other._rates)
+
+    def _changed(
+        self, change: Callable[[Array, Array], Array], others: Sequence[Array]
+    ) -> AxisLimits:
+        velocity, acceleration, jerk = map(change, self._rates, others)
+        return AxisLimits(velocity, acceleration, jerk, self.torques)
+
+    @property
+    def _rates(self) -> tuple[Array, Array, Array]:
+        return self.velocity, self.acceleration, self.jerk
 
 
 def axis_limits(machine: MachineData, torques: TorqueLimits | None = None) -> AxisLimits:
     """Return the limits in the machine data [MOT-05, MOT-06], with those of its torques."""
-    known = [_dynamics(axis) for axis in machine.every_axis]
-    return AxisLimits(
-        np.array([one.velocity for one in known]),
-        np.array([one.acceleration for one in known]),
-        np.array([one.jerk for one in known]),
-        torques,
-    )
-
-
-def _dynamics(axis: Axis) -> AxisDynamics:
-    if axis.dynamics is not None:
-        return axis.dynamics
-    return _LINEAR if axis.kind is AxisKind.LINEAR else _ROTARY
+    assumed = {AxisKind.LINEAR: _LINEAR}
+    known = [axis.dynamics or assumed.get(axis.kind, _ROTARY) for axis in machine.every_axis]
+    rates = np.array([(one.velocity, one.acceleration, one.jerk) for one in known])
+    velocity, acceleration, jerk = rates.T
+    return AxisLimits(velocity, acceleration, jerk, torques)
 
 
 def _shares(percents: Sequence[float]) -> Array:

@@ -12,6 +12,7 @@ import numpy as np
 
 from interp.robot.arm import Approximation, Motion
 from interp.robot.path.axis_path import Curve
+from interp.robot.path.pose_path import OrientedPath
 from interp.robot.path.tool_path import tool_way
 from interp.robot.planning.ramps import ramp
 from interp.robot.planning.tracks import Piece, Track
@@ -70,17 +71,14 @@ def _piece(track: Track, *, at_end: bool) -> Piece:
 
 def _path_share(track: Track, criterion: str, values: Approximation, *, at_end: bool) -> float:
     """Return the share of a CP motion; 1 if it has no length for this criterion."""
-    curve = _piece(track, at_end=at_end).curve
-    pose_path = curve.pose_path
     if criterion == "C_VEL":
         return _braking_share(track, values.cvel / 100.0, at_end=at_end)
-    if criterion == "C_ORI":
-        return (
-            1.0 if pose_path is None else _share(values.cori, math.degrees(max(pose_path.angles)))
-        )
-    if pose_path is None:
-        return _way_share(curve, values.cdis, at_end=at_end)
-    return _share(values.cdis, pose_path.length)
+    curve = _piece(track, at_end=at_end).curve
+    pose_path = curve.pose_path
+    if isinstance(pose_path, OrientedPath):
+        angle, length = math.degrees(max(pose_path.angles)), pose_path.length
+        return _share(values.cori, angle) if criterion == "C_ORI" else _share(values.cdis, length)
+    return 1.0 if criterion == "C_ORI" else _way_share(curve, values.cdis, at_end=at_end)
 
 
 def _share(part: float, whole: float) -> float:

@@ -24,7 +24,7 @@ from interp.robot.path.axis_path import (
     PosePathCurve,
     Rates,
 )
-from interp.robot.path.pose_path import Blend, StraightLine
+from interp.robot.path.pose_path import Blend, Line, OrientedPath
 from interp.robot.path.speed_profile import SpeedProfile, joined
 from interp.robot.path.transition import Overlap, Rounding, Transition
 from interp.robot.planning.blend_zones import Zone
@@ -208,8 +208,8 @@ class _Corner:
         [BLD-12]: the curve is travelled at constant speed, and overlapping is used only if that
         costs time.
         """
-        lines = [side.curve.pose_path for side in (self.one, self.other)]
-        are_lines = all(isinstance(line, StraightLine) for line in lines)
+        sides = [side.curve.pose_path for side in (self.one, self.other)]
+        are_lines = all(isinstance(p, OrientedPath) and isinstance(p.shape, Line) for p in sides)
         keeps_speed, cosine = False, 1.0
         if are_lines and self.common is not None and self.first.motion.criteria[0] == "C_VEL":
             (leaving,), (joining,) = (

@@ -159,19 +159,22 @@ def curve_limits_of(
         normal, hard = samples.straight(machine, programmed, steepest)
     else:
         normal, hard = samples.curved(machine, programmed, steepest, slowest)
-    jerk = np.minimum(normal.jerk, hard.jerk)
+    velocity, acceleration, jerk = normal
+    jerk = np.minimum(jerk, hard[2])
     for path in paths:
         is_known = math.isfinite(path.jerk)
-        smooth = path.jerk / path.length if is_known else normal.acceleration / _RAMP
-        jerk = np.minimum(jerk, smooth)
-    normal = replace(normal, jerk=jerk)
+        jerk = np.minimum(jerk, path.jerk / path.length if is_known else acceleration / _RAMP)
     size = max([*(path.length for path in paths), float(samples.first.max(initial=0.0)), 1e-9])
     stretches = []
-    for low, high in pairwise(_cuts(np.minimum(normal.velocity, slowest), 0, len(grid) - 1)):
+    for low, high in pairwise(_cuts(np.minimum(velocity, slowest), 0, len(grid) - 1)):
         part = slice(max(low - 1, 0), high + 2)  # with the next sample on either side
         start, end = float(grid[low]), float(grid[high])
         wanted = float(slowest[part].min()) * _ROUNDING
-        stretches.append(Stretch(start, end, size, wanted, normal.least(part), hard.least(part)))
+        bounds = (
+            Bounds(*(float(row[part].min()) * _ROUNDING for row in rows))
+            for rows in ((velocity, acceleration, jerk), hard)
+        )
+        stretches.append(Stretch(start, end, size, wanted, *bounds))
     return CurveLimits(tuple(stretches)).within(programmed.torques, curve)
 
 
@@ -203,21 +206,6 @@ def constant_speed_limits(
     return CurveLimits((Stretch(0.0, 1.0, size, programmed, normal, normal, constant),))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _SampledBounds:
-    """Bounds at samples of a curve, each ``(n,)``."""
-
-    velocity: Array
-    acceleration: Array
-    jerk: Array
-
-    def least(self, part: slice) -> Bounds:
-        """Return the lowest bounds of a part of the samples."""
-        rows = self.velocity[part], self.acceleration[part], self.jerk[part]
-        velocity, acceleration, jerk = (float(row.min()) * _ROUNDING for row in rows)
-        return Bounds(velocity, acceleration, jerk)
-
-
 class _Samples:
     """Samples of a curve: what they leave of the limits of the axes, and bounds from that.
 
@@ -243,19 +231,19 @@ class _Samples:
 
     def straight(
         self, machine: AxisLimits, programmed: AxisLimits, steepest: float
-    ) -> tuple[_SampledBounds, _SampledBounds]:
-        """Return the normal and the hard bounds of a straight curve.
+    ) -> tuple[Rates, Rates]:
+        """Return the normal and the hard bounds of a straight curve: speed, acceleration, jerk.
 
         The normal acceleration is at most ``steepest``.
         """
         velocity = self.speed(machine)
-        hard = _SampledBounds(velocity, self.acceleration(machine), self.jerk(machine))
         acceleration = np.minimum(self.acceleration(programmed), steepest)
-        return _SampledBounds(velocity, acceleration, self.jerk(programmed)), hard
+        hard = velocity, self.acceleration(machine), self.jerk(machine)
+        return (velocity, acceleration, self.jerk(programmed)), hard
 
     def curved(
         self, machine: AxisLimits, programmed: AxisLimits, steepest: float, slowest: Array
-    ) -> tuple[_SampledBounds, _SampledBounds]:
+    ) -> tuple[Rates, Rates]:
         """Return the same of a curve that is travelled at the speed ``slowest`` ``(n,)`` or less.
 
         The speed leaves the axes enough for half of their acceleration.
@@ -273,8 +261,7 @@ class _Samples:
         hardest = np.maximum(hardest, acceleration)
         jerk = self.third * speed**3 + 3.0 * self.second * speed * acceleration[:, None]
         smooth, sharpest = (self.jerk(each, jerk) * _MARGIN for each in (programmed, machine))
-        hard = _SampledBounds(velocity, hardest, sharpest)
-        return _SampledBounds(velocity, acceleration, smooth), hard
+        return (velocity, acceleration, smooth), (velocity, hardest, sharpest)
 
     def steady_speeds(self, limits: AxisLimits) -> tuple[float, float]:
         """Return the speeds at which curvature takes all of an axis's acceleration, and jerk."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from interp.robot.path.speed_profile import steady
+from interp.robot.path.speed_profile import SpeedProfile, steady
 from interp.robot.planning.junctions import SAME_CURVE, JoinedStretch, PathState
 from interp.robot.planning.schedule import braking, schedule
 from interp.robot.planning.timeline import Key, Leg, Section, Timeline
@@ -164,15 +164,8 @@ class PathExecution:
             for state, begins, rest in self._ahead_of(leg, route, time):
                 entries = [entry for entry in _entries(rest, state.u) if entry[1] is not None]
                 profiles = braking(_known(entries), state, is_hard=is_hard, is_strict=is_strict)
-                if profiles is None:
-                    continue
-                legs, start = [], begins
-                for (section, joined), profile in zip(entries, profiles, strict=False):
-                    if joined is not None:
-                        ends = start + profile.duration
-                        legs.append(Leg(section, joined.stretch, profile, start, ends))
-                        start = ends
-                return begins, legs
+                if profiles is not None:
+                    return begins, _legs(entries, profiles, begins)
         return self._timeline.end, []
 
     def _lay(
@@ -189,14 +182,23 @@ class PathExecution:
         if profiles is None:
             return False
         self._timeline.cut(begins)
-        queue = iter(profiles)
-        for section, joined in entries:
-            profile = steady(0.0, 0.0) if joined is None else next(queue)
-            stretch = section.limits.stretches[0] if joined is None else joined.stretch
-            ends = begins + profile.duration
-            self._timeline.append(Leg(section, stretch, profile, begins, ends))
-            begins = ends
+        for leg in _legs(entries, profiles, begins):
+            self._timeline.append(leg)
         return True
+
+
+def _legs(entries: Sequence[Entry], profiles: Sequence[SpeedProfile], begins: float) -> list[Leg]:
+    """Return the legs of all entries, or up to the one with the last profile."""
+    legs: list[Leg] = []
+    queue = iter(profiles)
+    for section, joined in entries:
+        profile = steady(0.0, 0.0) if joined is None else next(queue, None)
+        if profile is None:
+            break
+        stretch = section.limits.stretches[0] if joined is None else joined.stretch
+        legs.append(Leg(section, stretch, profile, begins, begins + profile.duration))
+        begins += profile.duration
+    return legs
 
 
 def _known(entries: Sequence[Entry]) -> list[JoinedStretch]:

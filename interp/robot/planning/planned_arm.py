@@ -8,8 +8,7 @@ the stop as it is.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -33,14 +32,6 @@ from interp.values.poses import Pose
 
 _ROUNDING = 1e-9  # of u
 _BACK = 1e-3  # degrees or mm by which the arm may have come back beside the place it left
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Mark:
-    plan: Plan
-    brakes: tuple[Plan | None, ...]
-    legs: tuple[Leg, ...]
-    now: int
 
 
 class PlannedArm:
@@ -97,17 +88,17 @@ class PlannedArm:
         self._plan = following
         return track.notices
 
-    def mark(self) -> object:
+    def mark(self) -> Callable[[], None]:
         """See `interp.robot.arm.Arm.mark`."""
-        return _Mark(self._plan, tuple(self._brakes), tuple(self._timeline.legs), self._now)
+        known = self._plan, [*self._brakes], self._now
+        legs = tuple(self._timeline.legs)
 
-    def rewind(self, mark: object) -> None:
-        """See `interp.robot.arm.Arm.rewind`."""
-        if not isinstance(mark, _Mark):
-            raise TypeError("not a mark of this arm")
-        self._plan, self._brakes, self._now = mark.plan, list(mark.brakes), mark.now
-        self._timeline.restore(mark.legs)
-        self._agenda = None
+        def rewind() -> None:
+            self._plan, self._brakes[:], self._now = known
+            self._timeline.restore(legs)
+            self._agenda = None
+
+        return rewind
 
     def _blended(self, plan: Plan, track: Track, programmed: Programmed) -> Plan | None:
         """Return a plan with one more motion and a blend into it, or ``None``.

@@ -10,12 +10,16 @@ from functools import lru_cache
 import ruckig
 
 from interp.robot.path.speed_profile import SpeedProfile, joined, profile_of, steady
-from interp.robot.planning.ramps import Bounds, bisected, ramp, speed_after
+from interp.robot.planning.ramps import Bounds, at_most, bisected, ramp, speed_after
 
 _SLACK = 1e-7
 """Relative difference within which a change of speed fills a length."""
+_SPARE = 2e-6
+"""Relative difference by which rounding may let the speed beside an end exceed its bound."""
 _EXACT = 1e-9
 """Relative error of a length that is accepted from Ruckig."""
+_ROUNDING = 1e-11
+"""Relative difference by which Ruckig may exceed the speed."""
 
 
 @lru_cache(maxsize=256)  # plans that differ in a blend have most of their spans in common
@@ -47,16 +51,21 @@ def _solved(
 ) -> SpeedProfile | None:
     """Return the profile that Ruckig finds, or ``None``.
 
-    Ruckig has absolute tolerances, so it is called in units in which the speed is at most 1.
+    Ruckig has absolute tolerances, so it is called in units in which the speed is about 1 at most.
+    Where a state needs more than that by rounding, Ruckig would find nothing, or brake first.
     """
     unit = max(bounds.velocity, target)
+    for v, a, jerk in ((speed, acceleration, bounds.jerk), (target, final, -bounds.jerk)):
+        eased = speed_after(v, a, 0.0, jerk)
+        if at_most(eased, unit, _SPARE):
+            unit = max(eased, unit)
     asked = ruckig.InputParameter(1)
     asked.current_velocity = [speed / unit]
     asked.current_acceleration = [acceleration / unit]
     asked.target_position = [length / unit]
     asked.target_velocity = [target / unit]
     asked.target_acceleration = [final / unit]
-    asked.max_velocity = [1.0]
+    asked.max_velocity = [1.0 + _ROUNDING]
     asked.max_acceleration = [max(bounds.acceleration, abs(final)) / unit]
     asked.max_jerk = [bounds.jerk / unit]
     trajectory = ruckig.Trajectory(1)

@@ -68,6 +68,11 @@ def speed_after(speed: float, acceleration: float, final: float, jerk: float) ->
     return speed + (final + acceleration) * abs(final - acceleration) / (2.0 * jerk)
 
 
+def at_most(value: float, limit: float, tolerance: float = 1e-9) -> bool:
+    """Return whether a length or speed is not above a limit, up to rounding errors."""
+    return value <= limit * (1.0 + tolerance) + 1e-9
+
+
 def bisected(fits: Callable[[float], bool], within: float, beyond: float) -> float:
     """Return the value that still fits and is nearest to one that does not."""
     for _ in range(_HALVINGS):

@@ -14,7 +14,8 @@ from itertools import pairwise
 
 from interp.robot.path.speed_profile import SpeedProfile
 from interp.robot.planning.junctions import JoinedStretch, PathState
-from interp.robot.planning.spans import RATIOS, Span, at_most, spans_of
+from interp.robot.planning.ramps import at_most
+from interp.robot.planning.spans import RATIOS, Span, spans_of
 
 _HELD = 0.8
 """Share of its constant speed below which a blend counts as slowed down by its neighbours."""
@@ -22,6 +23,9 @@ _STANDS = 1e-3
 """Speed in mm/s or deg/s at the end that counts as standstill."""
 _TOLERANCE = 1e-6
 """Relative difference by which a speed may exceed the allowed one."""
+
+#: The length at excessive speed, the duration in seconds, spans, and a profile for each stretch.
+_Candidate = tuple[float, float, Sequence[Span], list[SpeedProfile]]
 
 
 def schedule(
@@ -39,7 +43,7 @@ def schedule(
     """
     if not stretches:
         return []
-    best: _Candidate | None = None
+    candidates: list[_Candidate] = []
     tried: list[list[float]] = []
     for ratio in RATIOS:
         spans = spans_of(stretches, state, override, ratio=ratio)
@@ -48,10 +52,13 @@ def schedule(
         tried.append(lengths)
         start = _start(spans, state)
         found = _settled(spans, start, is_strict)
-        best = _better(best, spans, start, found)
+        candidates += _travelled(spans, start, found)
         if _ease(spans, found):
-            best = _better(best, spans, start, _settled(spans, start, is_strict))
-    return None if best is None else _own_units(stretches, best.spans, best.profiles)
+            candidates += _travelled(spans, start, _settled(spans, start, is_strict))
+    if not candidates:
+        return None
+    _, _, best, profiles = min(candidates, key=lambda candidate: candidate[:2])
+    return _own_units(stretches, best, profiles)
 
 
 def braking(
@@ -152,31 +159,13 @@ def _settled(spans: Sequence[Span], start: float, is_strict: bool) -> _Speeds | 
 # -------------------------------------------------------------------------------- alternatives
 
 
-@dataclass(frozen=True, slots=True)
-class _Candidate:
-    """Spans, a profile for each of their stretches, and the total duration in seconds."""
-
-    spans: Sequence[Span]
-    profiles: list[SpeedProfile]
-    over: float
-    duration: float
-
-
-def _better(
-    best: _Candidate | None, spans: Sequence[Span], start: float, found: _Speeds | None
-) -> _Candidate | None:
-    """Return the better candidate: less length at excessive speed, then shorter duration."""
-    if found is None or (best is not None and best.over < found.over):
-        return best
-    profiles: list[SpeedProfile] = []
-    duration = 0.0
-    for span, speed, final in zip(spans, [start, *found.ends], found.ends, strict=False):
-        for profile in span.profiles(speed, final):
-            profiles.append(profile)
-            duration += profile.duration
-        if best is not None and best.over <= found.over and best.duration <= duration:
-            return best
-    return _Candidate(spans, profiles, found.over, duration)
+def _travelled(spans: Sequence[Span], start: float, found: _Speeds | None) -> list[_Candidate]:
+    """Return how spans are travelled at these speeds, if there are any."""
+    if found is None:
+        return []
+    steps = zip(spans, [start, *found.ends], found.ends, strict=False)
+    profiles = [profile for span, *ends in steps for profile in span.profiles(*ends)]
+    return [(found.over, sum(profile.duration for profile in profiles), spans, profiles)]
 
 
 def _ease(spans: Sequence[Span], found: _Speeds | None) -> bool:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from interp.robot.path.speed_profile import SpeedProfile, steady
 from interp.robot.planning.junctions import STOP, JoinedStretch, PathState
 from interp.robot.planning.profile import travel
-from interp.robot.planning.ramps import Bounds, bisected, ramp, speed_after
+from interp.robot.planning.ramps import Bounds, at_most, bisected, ramp, speed_after
 
 _SPARE = 1.0 - 1e-6
 """Share of a length that changes of speed may use, so that rounding makes none impossible."""
@@ -200,11 +200,6 @@ def spans_of(
         spans[-1].add(scale, (stretch.end - start) * scale)
     spans[0].acceleration = state.acceleration * spans[0].scales[0]
     return spans
-
-
-def at_most(value: float, limit: float, tolerance: float = 1e-9) -> bool:
-    """Return whether a length or speed is not above a limit, up to rounding errors."""
-    return value <= limit * (1.0 + tolerance) + 1e-9
 
 
 def _is_about(inner: Bounds, outer: Bounds, ratio: float) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import groupby
 
 import numpy as np
 
@@ -16,18 +16,11 @@ from interp.robot.arm import Motion, Settings, SplinePart
 from interp.robot.kinematics.kinematics import Array, matrix_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.kinematics.solution_choice import check_path
-from interp.robot.path.axis_path import (
-    AxisPath,
-    JointCurve,
-    LinearAxes,
-    SplineAxes,
-)
+from interp.robot.path.axis_path import splined
 from interp.robot.path.circle import circle_through
-from interp.robot.path.pose_path import PosePath
 from interp.robot.path.programmed_targets import Programmed
 from interp.robot.path.spline import Knot, Segment, chains_of, pose_paths_of
 from interp.robot.planning.junctions import STOP, Junction
-from interp.robot.planning.limits import curve_limits_of
 from interp.robot.planning.spline_ranges import with_ranges
 from interp.robot.planning.tracks import Piece, Track, Tracks
 from interp.values.faults import Fault
@@ -114,7 +107,7 @@ def _pieces(
     for chain in chains_of(segments):
         pose_paths = pose_paths_of(chain)
         travelled = externals[number : number + len(chain) + 1]
-        ways = _others(pose_paths, travelled)
+        ways = splined([pose_path.length for pose_path in pose_paths], travelled)
         for place, (pose_path, others) in enumerate(zip(pose_paths, ways, strict=True)):
             settings = motion.parts[number].settings or motion.settings
             # Wrist axes in step would change their speed at each point, so they are not [ORI-03].
@@ -135,18 +128,6 @@ def _pieces(
             pieces.append(piece)
             number += 1
     return tuple(pieces)
-
-
-def _others(pose_paths: Sequence[PosePath], externals: Array) -> Sequence[AxisPath]:
-    """Return the external axes along each segment: a spline over the length of the chain."""
-    if len(pose_paths) == 1:
-        return [LinearAxes(*externals)]
-    knots = np.cumsum([0.0, *(pose_path.length for pose_path in pose_paths)])
-    from scipy.interpolate import CubicSpline
-
-    spline = CubicSpline(knots, externals, bc_type="natural")
-    places = zip(knots.tolist(), pose_paths, strict=False)
-    return [SplineAxes(spline, start, pose_path.length) for start, pose_path in places]
 
 
 def _knot(pose: Pose) -> Knot:
@@ -171,39 +152,17 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
         points.append(points[-1] if is_still else goal.axes)
         target = target.reached(goal.axes, None, motion.settings.placement)
     pieces: list[Piece] = []
-    for first, last in _runs(spans):
-        knots = np.cumsum([0.0, *spans[first:last]])
-        spline = None
-        if last - first > 1:
-            from scipy.interpolate import CubicSpline
-
-            spline = CubicSpline(knots, np.array(points[first : last + 1]), bc_type="natural")
-        for place in range(first, last):
-            own = motion.parts[place].settings or motion.settings
-            if not spans[place]:
-                pieces.append(tracks.still(points[place], own))
-                continue
-            path: AxisPath
-            if spline is None:
-                path = LinearAxes(points[place], points[place + 1])
-            else:
-                path = SplineAxes(spline, float(knots[place - first]), spans[place])
-                check_path(tracks.machine.every_axis, path.axes(_CLOSE))
-            curve = JointCurve(tracks.arm, own.placement, path)
-            limits = tracks.programmed(own)
-            paths = tracks.reduced_paths(curve, own)
-            curve_limits = curve_limits_of(curve, tracks.limits, limits, paths)
+    settings = [part.settings or motion.settings for part in motion.parts]
+    for moves, group in groupby(range(len(spans)), key=lambda place: spans[place] > 0.0):
+        first, *others = group
+        last = first + len(others) + 1
+        if not moves:
+            pieces += (tracks.still(points[place], settings[place]) for place in range(first, last))
+            continue
+        paths = splined(spans[first:last], np.array(points[first : last + 1]))
+        for place, path in enumerate(paths, start=first):
+            check_path(tracks.machine.every_axis, path.axes(_CLOSE))
             junction = Junction(spans[place - 1] / spans[place]) if place > first else STOP
-            pieces.append(Piece(curve, curve_limits, (), junction))
-    last_settings = motion.parts[-1].settings or motion.settings
-    track = Track(motion, tuple(pieces), tracks.programmed(last_settings), is_singular)
+            pieces.append(tracks.axis_piece(path, settings[place], junction))
+    track = Track(motion, tuple(pieces), tracks.programmed(settings[-1]), is_singular)
     return track, target
-
-
-def _runs(spans: Sequence[float]) -> list[tuple[int, int]]:
-    """Return the runs of segments without a stop in between; one of length zero is its own run."""
-    cuts = {0, len(spans)}
-    for place, span in enumerate(spans):
-        if not span:
-            cuts |= {place, place + 1}
-    return list(pairwise(sorted(cuts)))

@@ -14,6 +14,7 @@ import numpy as np
 from interp.port.requests import SplineRange
 from interp.robot.arm import Motion
 from interp.robot.kinematics.kinematics import Array
+from interp.robot.path.pose_path import OrientedPath
 from interp.robot.path.speed_profile import SpeedProfile
 from interp.robot.planning.junctions import AT_REST, SAME_CURVE, STOP, JoinedStretch
 from interp.robot.planning.limits import CurveLimits, Stretch
@@ -219,7 +220,7 @@ def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, SpeedPro
 
 def _length(piece: Piece) -> float:
     pose_path = piece.curve.pose_path
-    return pose_path.length if pose_path is not None else 0.0
+    return pose_path.length if isinstance(pose_path, OrientedPath) else 0.0
 
 
 def _broken(number: int, text: str) -> Fault:

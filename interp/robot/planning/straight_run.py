@@ -16,7 +16,7 @@ from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import ROBOT_AXES
 from interp.robot.path.axis_path import Curve, JointCurve, LinearAxes, PosePathCurve
 from interp.robot.path.orientation import turning
-from interp.robot.path.pose_path import StraightLine
+from interp.robot.path.pose_path import Line, OrientedPath
 from interp.robot.planning.limits import CurveLimits, curve_limits_of
 from interp.robot.planning.timeline import Key, Section
 from interp.robot.planning.tracks import Track, Tracks
@@ -46,7 +46,7 @@ class StraightPart:
             (way,), _, _ = curve.rates(np.zeros(1))
             return cls(curve, float(np.linalg.norm(way)))
         line = curve.pose_path
-        if not isinstance(line, StraightLine):
+        if not (isinstance(line, OrientedPath) and isinstance(line.shape, Line)):
             return cls(curve, 0.0)
         (point,), (turn,) = line.at(np.ones(1))
         return cls(curve, line.length or sum(line.angles), point, turn)
@@ -150,7 +150,7 @@ def straight_through(
     lines = [line for line in (one.pose_path, other.pose_path) if line is not None]
     (point,), (turned,) = lines[0].at(np.array([start]))
     (there,), (turn,) = lines[1].at(np.array([end]))
-    whole = StraightLine(point, there, turning(turned, turn))
+    whole = OrientedPath(Line(point, there), turning(turned, turn))
     others = LinearAxes(leaves[ROBOT_AXES:], joins[ROBOT_AXES:])
     places, rotations = whole.at(shares)
     is_through = (

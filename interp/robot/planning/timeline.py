@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 import numpy.typing as npt
@@ -210,24 +211,13 @@ class Timeline:
         axes = np.empty((len(times), len(self.start)))
         places = np.searchsorted(np.array(self._begins), seconds, side="right") - 1
         axes[places < 0] = self.start
-        for curve, wanted, parts in self._grouped(places, seconds):
-            axes[wanted] = curve.axes(np.concatenate(parts))
+        passed = np.unique(places[places >= 0]).tolist()
+        for curve, group in groupby(passed, key=lambda place: self.legs[place].section.curve):
+            numbers = [*group]
+            parts = [self.legs[number].at(seconds[places == number]) for number in numbers]
+            first, behind = np.searchsorted(places, (numbers[0], numbers[-1] + 1))
+            axes[first:behind] = curve.axes(np.concatenate(parts))
         return Samples(times, axes)
-
-    def _grouped(
-        self, places: npt.NDArray[np.intp], seconds: Array
-    ) -> Iterator[tuple[Curve, slice, list[Array]]]:
-        """Yield for each curve its slice of the times, and the parameters on its legs there."""
-        first = int(np.searchsorted(places, 0))
-        while first < len(places):
-            curve = self.legs[places[first]].section.curve
-            start, parts = first, []
-            while first < len(places) and self.legs[places[first]].section.curve is curve:
-                leg = self.legs[places[first]]
-                behind = int(np.searchsorted(places, places[first], side="right"))
-                parts.append(leg.at(seconds[first:behind]))
-                first = behind
-            yield curve, slice(start, first), parts
 
 
 def micros(seconds: float) -> int:

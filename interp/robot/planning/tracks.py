@@ -23,17 +23,13 @@ from interp.robot.path.axis_path import (
 )
 from interp.robot.path.circle import Circle, circle_through
 from interp.robot.path.orientation import Carried, Orientation, Turning, about, turning
-from interp.robot.path.pose_path import Arc, PosePath, StraightLine
+from interp.robot.path.pose_path import Line, OrientedPath
 from interp.robot.path.programmed_targets import Programmed
 from interp.robot.path.tool_path import tool_tangents
 from interp.robot.path.wrist import WristCurve
 from interp.robot.planning.axis_limits import AxisLimits, axis_limits
 from interp.robot.planning.junctions import STOP, Junction
-from interp.robot.planning.limits import (
-    CurveLimits,
-    PathLimits,
-    curve_limits_of,
-)
+from interp.robot.planning.limits import CurveLimits, PathLimits, curve_limits_of
 from interp.robot.planning.torque_limits import TorqueLimits
 from interp.values.faults import Fault
 from interp.values.poses import Pose
@@ -140,14 +136,10 @@ class Tracks:
     def _ptp(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
         settings = motion.settings
         goal = before.goal(motion, motion.target, settings.placement)
-        line = LinearAxes(before.axes, goal.axes)
-        curve = JointCurve(self.arm, settings.placement, line)
-        limits = self.programmed(settings)
+        piece = self.axis_piece(LinearAxes(before.axes, goal.axes), settings)
         is_still = bool(np.abs(goal.axes - before.axes).max() < _STILL)
-        paths = self.reduced_paths(curve, settings)
-        curve_limits = curve_limits_of(curve, self.limits, limits, paths)
-        piece = Piece(curve, curve_limits, is_still=is_still)
-        track = Track(motion, (piece,), limits, goal.is_singular)
+        pieces = (replace(piece, is_still=is_still),)
+        track = Track(motion, pieces, self.programmed(settings), goal.is_singular)
         return track, before.reached(goal.axes, goal.components, settings.placement)
 
     def _line(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
@@ -155,7 +147,8 @@ class Tracks:
         start = matrix_of(placement.in_path(before.pose_in(placement)))
         point = self._point(motion, motion.target, before)
         end = matrix_of(placement.in_path(Pose.of(*point)))
-        pose_path = StraightLine(start[:3, 3], end[:3, 3], _turning(motion.settings, start, end))
+        line = Line(start[:3, 3], end[:3, 3])
+        pose_path = OrientedPath(line, _turning(motion.settings, start, end))
         return self._along(motion, before, pose_path, point)
 
     def _circle(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
@@ -168,18 +161,17 @@ class Tracks:
         circle = circle_through(
             start[:3, 3], np.array(auxiliary.position), end[:3, 3], motion.angle
         )
-        pose_path = Arc(circle, _along_circle(motion.settings, circle, start, end))
+        pose_path = OrientedPath(circle, _along_circle(motion.settings, circle, start, end))
         return self._along(motion, before, pose_path, point)
 
     def _along(
-        self, motion: Motion, before: Programmed, pose_path: PosePath, point: tuple[float, ...]
+        self, motion: Motion, before: Programmed, pose_path: OrientedPath, point: tuple[float, ...]
     ) -> tuple[Track, Programmed]:
         """Return the track of a path; its end pose is the target unless the motion has an angle."""
         settings = motion.settings
         externals = before.externals(motion.target, motion.is_relative)
         travel = np.abs(externals - before.axes[ROBOT_AXES:]).max(initial=0.0)
-        swivel, rotation = (math.degrees(angle) for angle in pose_path.angles)
-        if max(pose_path.length, swivel, rotation, travel) < _STILL:
+        if max(pose_path.length, *map(math.degrees, pose_path.angles), travel) < _STILL:
             track = Track(motion, (self.still(before.axes, settings),), self.limits)
             return track, before.reached(before.axes, point, settings.placement)
         others = LinearAxes(before.axes[ROBOT_AXES:], externals)
@@ -190,23 +182,27 @@ class Tracks:
         return track, before.reached(axes, reached, settings.placement)
 
     def along(
-        self, pose_path: PosePath, start: Array, others: AxisPath, kind: str, settings: Settings
+        self, pose_path: OrientedPath, start: Array, others: AxisPath, kind: str, settings: Settings
     ) -> Piece:
         """Return the piece for a path, from the axes of the robot at its start. Raises `Fault`."""
         limits = self.limits.carrying(settings.loads)
         is_wrist = settings.orientation == "#JOINT" and settings.placement.mode is IpoMode.BASE
         kind_of_curve = WristCurve if is_wrist else PosePathCurve
         curve = kind_of_curve(self.arm, settings.placement, pose_path, start, others)
-        angles = (0.0, 0.0) if is_wrist else pose_path.angles
-        swivel, rotation = (math.degrees(angle) for angle in angles)
-        paths = self.paths(settings, pose_path.length, swivel, rotation, is_spline=kind[0] == "S")
+        angles = [0.0 if is_wrist else math.degrees(angle) for angle in pose_path.angles]
+        paths = self.paths(settings, (pose_path.length, *angles), is_spline=kind[0] == "S")
         self.check_speed(settings, curve, paths)
         return Piece(curve, curve_limits_of(curve, limits, limits, paths), paths)
 
+    def axis_piece(self, path: AxisPath, settings: Settings, junction: Junction = STOP) -> Piece:
+        """Return the piece for a path in axis space."""
+        curve = JointCurve(self.arm, settings.placement, path)
+        limits, paths = self.programmed(settings), self.reduced_paths(curve, settings)
+        return Piece(curve, curve_limits_of(curve, self.limits, limits, paths), (), junction)
+
     def still(self, axes: Array, settings: Settings) -> Piece:
         """Return a piece of length zero."""
-        curve = JointCurve(self.arm, settings.placement, LinearAxes(axes, axes))
-        return Piece(curve, curve_limits_of(curve, self.limits, self.limits, ()), is_still=True)
+        return replace(self.axis_piece(LinearAxes(axes, axes), settings), is_still=True)
 
     def _point(self, motion: Motion, target: Target, before: Programmed) -> tuple[float, ...]:
         placement = motion.settings.placement
@@ -223,35 +219,31 @@ class Tracks:
         return limits
 
     def paths(
-        self,
-        settings: Settings,
-        length: float,
-        swivel: float,
-        rotation: float,
-        *,
-        is_spline: bool = False,
+        self, settings: Settings, lengths: Sequence[float], *, is_spline: bool = False
     ) -> tuple[PathLimits, ...]:
         """Return the limits for a path of this length, swivel and rotation.
 
         See [MOT-04, MOT-05, MOT-07]. Units are mm and degrees. Spline motions have the jerk with
         which controllers are delivered.
         """
-        velocity, acceleration = self.machine.velocity, self.machine.acceleration
-        speed = min(_above(settings.velocity, "$VEL.CP"), velocity.path)
-        if settings.is_reduced:
-            speed = min(speed, self.machine.t1_speed)
-        gain = min(_above(settings.acceleration, "$ACC.CP"), acceleration.path)
-        jerks = _SPLINE_JERKS if is_spline else (math.inf, math.inf)
-        limits = [PathLimits(length, speed * _METRE, gain * _METRE, jerks[0])]
-        turns = (
-            (swivel, settings.swivel, velocity.swivel, acceleration.swivel, "ORI1"),
-            (rotation, settings.rotation, velocity.rotation, acceleration.rotation, "ORI2"),
+        most, steepest = self.machine.velocity, self.machine.acceleration
+        path_jerk, turn_jerk = _SPLINE_JERKS if is_spline else (math.inf, math.inf)
+        path_speed = min(most.path, self.machine.t1_speed if settings.is_reduced else math.inf)
+        programmed = (
+            ("CP", settings.velocity, settings.acceleration, path_speed, steepest.path),
+            ("ORI1", *settings.swivel, most.swivel, steepest.swivel),
+            ("ORI2", *settings.rotation, most.rotation, steepest.rotation),
         )
-        for angle, (fastest, steepest), most, most_gain, name in turns:
-            turn = min(_above(fastest, f"$VEL.{name}"), most)
-            turn_gain = min(_above(steepest, f"$ACC.{name}"), most_gain)
-            limits.append(PathLimits(angle, turn, turn_gain, jerks[1]))
-        return tuple(limit for limit in limits if limit.length > _STILL)
+        limits = []
+        for length, (name, velocity, acceleration, top, top_gain) in zip(
+            lengths, programmed, strict=True
+        ):
+            speed = min(_above(velocity, f"$VEL.{name}"), top)
+            gain = min(_above(acceleration, f"$ACC.{name}"), top_gain)
+            unit, jerk = (_METRE, path_jerk) if name == "CP" else (1.0, turn_jerk)
+            if length > _STILL:
+                limits.append(PathLimits(length, speed * unit, gain * unit, jerk))
+        return tuple(limits)
 
     def reduced_paths(self, curve: Curve, *settings: Settings) -> tuple[PathLimits, ...]:
         """Return the limits of a curve in axis space if one of the settings is for T1.

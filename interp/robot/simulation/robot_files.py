@@ -153,66 +153,41 @@ def _below(model: Any, body: int) -> Iterable[int]:
 
 def _chain(model: Any, joints: list[int], hand: int) -> Chain:
     """Return the chain of joints, with frames in mm at the joints' anchors."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
     made: list[Joint] = []
-    before, anchor = 0, np.eye(4)
+    before = np.eye(4)
     for number, joint in enumerate(joints, start=1):
-        body = int(model.jnt_bodyid[joint])
-        here = _moved_by(model.jnt_pos[joint])
-        frame = np.linalg.inv(anchor) @ _between(model, before, body) @ here
-        axis = model.jnt_axis[joint] / np.linalg.norm(model.jnt_axis[joint])
+        here = _matrix(data.xanchor[joint], data.xmat[model.jnt_bodyid[joint]])
+        x, y, z = model.jnt_axis[joint].tolist()
         is_linear = int(model.jnt_type[joint]) == _KINDS[1]
-        x, y, z = (float(part) for part in axis)
-        made.append(Joint(f"A{number}", _pose(frame), (x, y, z), bool(is_linear)))
-        before, anchor = body, here
-    return Chain(tuple(made), _pose(np.linalg.inv(anchor) @ _flange(model, hand)))
+        made.append(Joint(f"A{number}", _between(before, here), (x, y, z), is_linear))
+        before = here
+    return Chain(tuple(made), _between(before, _flange(model, data, hand)))
 
 
-def _flange(model: Any, hand: int) -> Array:
-    """Return the flange relative to the last body."""
+def _flange(model: Any, data: Any, hand: int) -> Array:
+    """Return the flange in the world."""
+    carried = set(_below(model, hand))
     for name in _FLANGES:
         site = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, name)
-        body = int(model.site_bodyid[site]) if site >= 0 else -1
-        if body >= 0 and _is_below(model, body, hand):
-            return _between(model, hand, body) @ _matrix(
-                model.site_pos[site], model.site_quat[site]
-            )
+        if site >= 0 and int(model.site_bodyid[site]) in carried:
+            return _matrix(data.site_xpos[site], data.site_xmat[site])
         body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, name)
-        if body >= 0 and _is_below(model, body, hand):
-            return _between(model, hand, body)
-    return np.eye(4)
+        if body in carried:
+            return _matrix(data.xpos[body], data.xmat[body])
+    return _matrix(data.xpos[hand], data.xmat[hand])
 
 
-def _is_below(model: Any, body: int, above: int) -> bool:
-    while body not in (above, 0):
-        body = int(model.body_parentid[body])
-    return body == above
-
-
-def _between(model: Any, above: int, body: int) -> Array:
-    """Return a body relative to one that carries it, with all joints at zero."""
+def _matrix(place: Array, turn: Array) -> Array:
+    """Return a frame in the world, in mm."""
     pose = np.eye(4)
-    while body != above:
-        pose = _matrix(model.body_pos[body], model.body_quat[body]) @ pose
-        body = int(model.body_parentid[body])
+    pose[:3, :3], pose[:3, 3] = turn.reshape(3, 3), 1000.0 * place
     return pose
 
 
-def _matrix(place: Array, quaternion: Array) -> Array:
-    turn = np.empty(9)
-    mujoco.mju_quat2Mat(turn, quaternion)
-    pose = _moved_by(place)
-    pose[:3, :3] = turn.reshape(3, 3)
-    return pose
-
-
-def _moved_by(place: Array) -> Array:
-    pose = np.eye(4)
-    pose[:3, 3] = 1000.0 * np.asarray(place)
-    return pose
-
-
-def _pose(matrix: Array) -> Pose:
-    return Pose.from_matrix(matrix.tolist())
+def _between(before: Array, after: Array) -> Pose:
+    return Pose.from_matrix((np.linalg.inv(before) @ after).tolist())
 
 
 def _speeds(tree: ET.Element) -> dict[str, float]:

@@ -73,14 +73,15 @@ class SecondArm:
 
     # the port
 
-    def mark(self) -> object:
-        """What is planned."""
+    def mark(self) -> Callable[[], None]:
+        """What undoes all that is planned from here on."""
         queue = self.queue
-        return (list(queue.motions), list(queue.events), queue.end, set(queue.ended))
+        known = list(queue.motions), list(queue.events), queue.end, set(queue.ended)
 
-    def rewind(self, mark: Any) -> None:
-        """Undo what was planned since."""
-        self.queue.motions, self.queue.events, self.queue.end, self.queue.ended = mark
+        def rewind() -> None:
+            queue.motions, queue.events, queue.end, queue.ended = known
+
+        return rewind
 
     def plan(self, now: int, motion: Motion) -> tuple[int, ...]:
         """Append a motion; beyond 180 degrees it cannot be."""

@@ -35,10 +35,10 @@ def moving(driver: Driver) -> Driver:
 
 def rehearsed(driver: Driver) -> np.ndarray:
     """The path as it is when nothing disturbs it; then all is as before."""
-    mark, begin, events = driver.arm.mark(), driver.now, list(driver.events)
+    rewind, begin, events = driver.arm.mark(), driver.now, list(driver.events)
     driver.play()
     path = geometry(driver, begin)
-    driver.arm.rewind(mark)
+    rewind()
     driver.now, driver.events = begin, events
     return path
 

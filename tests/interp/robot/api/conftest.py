@@ -44,14 +44,14 @@ class PacedArm:
             insort(self.ahead, event, key=lambda one: one.time)
         return () if duration else (3171,)
 
-    def mark(self) -> object:
-        """What is ahead."""
-        return tuple(self.ahead), self.free_from
+    def mark(self) -> Callable[[], None]:
+        """What undoes all that is planned from here on."""
+        ahead, free_from = list(self.ahead), self.free_from
 
-    def rewind(self, mark: object) -> None:
-        """Undo what was planned."""
-        assert isinstance(mark, tuple)
-        self.ahead, self.free_from = list(mark[0]), mark[1]
+        def rewind() -> None:
+            self.ahead, self.free_from = ahead, free_from
+
+        return rewind
 
     def next_event(self) -> ArmEvent | None:
         """The first event ahead."""

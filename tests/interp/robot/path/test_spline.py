@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from interp.robot.arm import SplinePart
+from interp.robot.path.pose_path import OrientedPath
 from interp.values.faults import Fault
 
 if TYPE_CHECKING:
@@ -65,8 +66,8 @@ def test_tangent_and_curvature_go_on(driver: Driver) -> None:
     step = 1e-4
     for one, other in pairwise(sections):
         before, behind = one.curve.pose_path, other.curve.pose_path
-        assert before is not None
-        assert behind is not None
+        assert isinstance(before, OrientedPath)
+        assert isinstance(behind, OrientedPath)
         assert before.length / behind.length == pytest.approx(other.junction.gear)
         first = before.tangents(np.array([1 - 2 * step, 1 - step, 1.0])) / before.length
         second = behind.tangents(np.array([0.0, step, 2 * step])) / behind.length

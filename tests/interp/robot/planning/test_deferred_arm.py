@@ -1,7 +1,7 @@
 """An arm that is planned from its first motion on."""
 
 from interp.robot.models import default_machine
-from interp.robot.planning.deferred_arm import DeferredArm
+from interp.robot.planning.deferred_arm import deferred_arm
 from interp.robot.planning.planned_arm import PlannedArm
 
 _START = (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)
@@ -15,7 +15,7 @@ def test_it_is_the_arm_that_was_there_from_the_beginning() -> None:
         made.append(PlannedArm(default_machine(), _START))
         return made[-1]
 
-    deferred, planned = DeferredArm(make), PlannedArm(default_machine(), _START)
+    deferred, planned = deferred_arm(make), PlannedArm(default_machine(), _START)
     for arm in (deferred, planned):
         arm.override(0, 50.0)
         arm.override(20, 30.0)

@@ -14,7 +14,7 @@ from interp.robot.kinematics.placement import Placement
 from interp.robot.kinematics.solution_choice import follow
 from interp.robot.path.axis_path import LinearAxes, PosePathCurve
 from interp.robot.path.orientation import turning
-from interp.robot.path.pose_path import StraightLine, poses_of
+from interp.robot.path.pose_path import Line, OrientedPath, poses_of
 from interp.robot.planning.axis_limits import axis_limits
 from interp.robot.planning.limits import CurveLimits, PathLimits, curve_limits_of
 
@@ -33,7 +33,7 @@ def line(
     arm = kinematics_of(machine)
     pose = arm.forward(start[:6])
     still = turning(pose[:3, :3], pose[:3, :3])
-    pose_path = StraightLine(pose[:3, 3], pose[:3, 3] + np.array(shift), still)
+    pose_path = OrientedPath(Line(pose[:3, 3], pose[:3, 3] + np.array(shift)), still)
     return PosePathCurve(arm, Placement(), pose_path, start[:6], LinearAxes(NONE, NONE))
 
 

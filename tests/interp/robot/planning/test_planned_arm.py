@@ -77,12 +77,12 @@ def test_what_was_travelled_is_known(driver: Driver) -> None:
 
 
 def test_undoing_what_was_planned(driver: Driver) -> None:
-    """Back at a mark the arm is as it was, events and all."""
+    """Undone, the arm is as it was, events and all."""
     driver.move("PTP", {"A1": 40.0}, criteria=("C_PTP",))
-    mark = driver.arm.mark()
+    rewind = driver.arm.mark()
     before, event = driver.arm.sample(np.arange(0, 10**6, 10**4)).axes, driver.arm.next_event()
     driver.move("PTP", {"A2": -60.0})
-    driver.arm.rewind(mark)
+    rewind()
     assert np.array_equal(before, driver.arm.sample(np.arange(0, 10**6, 10**4)).axes)
     assert (event, 1) == (driver.arm.next_event(), driver.arm.pending())
 
