@@ -9,7 +9,7 @@ name       in capitals
 operands   their kinds, see `OPERAND_KINDS`, as ``name:kind`` where the name is another
 checks     what must hold of the operands
 effect     what it takes from the stack of operands and what it leaves; for this and the checks see
-           `interp.bytecode.instruction_set.effects`
+           `interp.bytecode.verifier.stack_effects`
 flags      ``ends`` where the next instruction does not follow, ``changes`` what no condition may
            have, ``trace`` what only makes a trace event
 sentence   what it does, and the faults it raises
@@ -23,7 +23,6 @@ from functools import cache
 from importlib import resources
 from typing import Final
 
-from interp.bytecode.instruction_set.effects import EffectStep, steps_of
 from interp.program.variables import MOST_CELLS
 from interp.values.faults import FAULTS
 from support.lazy_dataclass import dataclass
@@ -72,7 +71,7 @@ OPERAND_KINDS: Mapping[str, OperandKind] = {
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """An instruction of the set: ``operands`` are their kinds, ``steps`` those of a verifier."""
+    """An instruction of the set: ``operands`` are their kinds, in ``operand_text`` with names."""
 
     number: int
     name: str
@@ -80,7 +79,6 @@ class Shape:
     operand_text: str
     checks: str
     effect: str
-    steps: tuple[EffectStep, ...]
     flags: frozenset[str]
     sentence: str
 
@@ -106,18 +104,7 @@ def shape(name: str) -> Shape:
 
 def _shape(row: list[str]) -> Shape:
     number, name, operands, checks, effect, flags, sentence = row
-    kinds: dict[str, str] = {}
-    for operand in operands.split():
-        label, _, kind = operand.rpartition(":")
-        kinds[label or kind] = kind
+    kinds = tuple(operand.rpartition(":")[2] for operand in operands.split())
     return Shape(
-        int(number),
-        name,
-        tuple(kinds.values()),
-        operands,
-        checks,
-        effect,
-        steps_of(kinds, checks, effect),
-        frozenset(flags.split()),
-        sentence,
+        int(number), name, kinds, operands, checks, effect, frozenset(flags.split()), sentence
     )

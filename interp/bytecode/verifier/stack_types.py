@@ -54,6 +54,11 @@ class Stack:
         return found
 
 
+def value_of(type_: int) -> StackItem:
+    """Return a value of this type."""
+    return StackItem(Mode.IN, type_)
+
+
 def reference_to(type_: int) -> StackItem:
     """Return a reference to a place of this type."""
     return StackItem(Mode.REF, type_)
