@@ -293,21 +293,22 @@ def cells_of(value: Value | None, type_: Type) -> list[Raw | None]:
     kind = shown(type_)
     if not (isinstance(value, StructureValue | ArrayValue) and value.type == kind):
         value = converted(value, kind)
-    return _flattened(value, type_)
+    return flattened(value, type_)
 
 
-def _flattened(value: Value | None, type_: Type) -> list[Raw | None]:
+def flattened(value: Value | None, type_: Type) -> list[Raw | None]:
+    """Return the cells of a value of exactly this type."""
     match value:
         case None:
             return [None] * size(type_)
         case StructureValue():
             pairs = zip(value.members, value.type.members, strict=True)
-            return [raw for part, member in pairs for raw in _flattened(part, member.type)]
+            return [raw for part, member in pairs for raw in flattened(part, member.type)]
         case ArrayValue() if value.type.element == CHAR:
             letters: Any = value
             return [None if letter is None else ord(letter) for letter in letters]
         case ArrayValue():
-            return [raw for part in value for raw in _flattened(part, value.type.element)]
+            return [raw for part in value for raw in flattened(part, value.type.element)]
     assert isinstance(type_, Plain), "what is no structure and no array is a scalar"
     return [raw_of(value, type_)]
 

@@ -23,24 +23,28 @@ from interp.values.values import Value, copied
 
 
 @dataclass(slots=True)
-class _Data:
-    """The variables of all data lists, and the number of scalars in them."""
+class DataLists:
+    """The variables of all data lists, and the number of scalars in them.
+
+    ``left_out`` are the initial values that cannot be computed, as (path, line, reason).
+    """
 
     places: dict[Symbol, LocalPlace] = field(default_factory=dict)
     cells: int = 0
+    left_out: list[tuple[str, int, str]] = field(default_factory=list)
 
 
 #: The data lists with their initial values, computed once for each project.
-_FILLED: WeakKeyDictionary[Project, _Data] = WeakKeyDictionary()
+_FILLED: WeakKeyDictionary[Project, DataLists] = WeakKeyDictionary()
 
 
 def fill_data(run: ProgramState) -> None:
     """Create the variables of all data lists with their initial values.
 
     System variables that a data list declares are created too, but at run time the controller holds
-    them. Raises `LinkError` if an initial value cannot be computed.
+    them. Raises `LinkError` as `initial_data` does.
     """
-    filled = _filled(run.program)
+    filled = initial_data(run.program)
     run.cells = filled.cells
     run.data = {
         symbol: LocalPlace([copied(place.get())], place.type, place.path)
@@ -50,7 +54,7 @@ def fill_data(run: ProgramState) -> None:
 
 def system_values(program: CheckedProgram) -> Mapping[str, Value]:
     """Return the initial values that data lists give to system variables, by name in upper case."""
-    found = {symbol.key: place.get() for symbol, place in _filled(program).places.items()}
+    found = {symbol.key: place.get() for symbol, place in initial_data(program).places.items()}
     return {
         key: copied(value)
         for key, value in found.items()
@@ -58,22 +62,27 @@ def system_values(program: CheckedProgram) -> Mapping[str, Value]:
     }
 
 
-def _filled(program: CheckedProgram) -> _Data:
+def initial_data(program: CheckedProgram) -> DataLists:
+    """Return the data lists with their initial values; nothing of it may be changed.
+
+    Raises `LinkError` if they are too large, or if an initial value cannot be computed in a program
+    that was loaded with ``strict``.
+    """
     data = _FILLED.get(program.project)
     if data is None:
-        data = _Data()
+        data = DataLists()
         lists = list(data_lists(program))
         for unit, _ in lists:
             _declare(data, program, unit)
         run = ProgramState(program)
         run.data = data.places
         for unit, content in lists:
-            _initialise(run, unit, content)
+            _initialise(data, run, unit, content)
         _FILLED[program.project] = data
     return data
 
 
-def _declare(data: _Data, program: CheckedProgram, unit: Unit) -> None:
+def _declare(data: DataLists, program: CheckedProgram, unit: Unit) -> None:
     for found, type_ in data_variables(program, unit):
         data.cells += cells(type_)
         if data.cells > MOST_CELLS:
@@ -81,11 +90,8 @@ def _declare(data: _Data, program: CheckedProgram, unit: Unit) -> None:
         data.places[found.symbol] = fresh(type_, found.symbol.key)
 
 
-def _initialise(run: ProgramState, unit: Unit, content: ast.DataList) -> None:
-    """Assign the initial values of a data list.
-
-    If the program was loaded without ``strict``, values that cannot be computed are left out.
-    """
+def _initialise(data: DataLists, run: ProgramState, unit: Unit, content: ast.DataList) -> None:
+    """Assign the initial values of a data list."""
     scope = run.program.project.scope(unit.module)
     frame = Frame(unit, content.name.text, scope, {}, None, 0)
     inside = _DataList(run, frame)
@@ -95,6 +101,7 @@ def _initialise(run: ProgramState, unit: Unit, content: ast.DataList) -> None:
         except (Fault, LinkError) as error:
             if run.program.is_strict:
                 raise LinkError(f"{unit.module.path}:{line}: {error}") from None
+            data.left_out.append((unit.module.path, line, str(error)))
 
 
 class _DataList(Calls):

@@ -171,10 +171,6 @@ class Writer:
         """Remove all instructions from this place on."""
         del self._code[place:]
 
-    def ops(self, place: int) -> set[Op]:
-        """Return the opcodes of all instructions from this place on."""
-        return {written.op for written in self._code[place:]}
-
     def drop_last(self) -> None:
         """Remove the last instruction."""
         self._code.pop()

@@ -64,8 +64,7 @@ class Context:
 
     ``variables`` are the locations of parameters and local variables. ``result`` is the type of the
     result; a large one is stored through the parameter at offset ``target``. ``number`` is the
-    number of the code object. If ``is_data_list``, the code fills a data list; then it stores the
-    system variables that the list declares, although the controller owns them at run time.
+    number of the code object.
     """
 
     shared: Shared
@@ -77,7 +76,6 @@ class Context:
     target: int | None = None
     line: int = 0
     number: int = -1
-    is_data_list: bool = False
 
     @property
     def program(self) -> CheckedProgram:

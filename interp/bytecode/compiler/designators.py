@@ -95,7 +95,7 @@ class Designators:
             if symbol in self._context.variables:
                 return self._context.variables[symbol]
             raise self._emitter.refuse(str(untyped(symbol.name)))
-        if self._is_remote(found):
+        if found.module is None or symbol.key.startswith("$"):  # the controller owns it
             return SystemVariable((symbol.key,), self._context.program.type_of(found))
         if isinstance(symbol, SignalSymbol):
             if symbol in signals:
@@ -106,12 +106,6 @@ class Designators:
         if symbol.kind in (Kind.VARIABLE, Kind.CONSTANT):
             raise self._emitter.refuse(str(untyped(symbol.name)))
         raise self._emitter.unlinked(f"{symbol.name} is no variable")
-
-    def _is_remote(self, found: Found) -> bool:
-        """Return whether the controller owns a variable."""
-        if self._context.is_data_list and found.symbol in self._context.tables.places:
-            return False
-        return found.module is None or found.symbol.key.startswith("$")
 
     def _signal(
         self, symbol: SignalSymbol, found: Found, signals: tuple[SignalSymbol, ...]

@@ -7,16 +7,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
-from grammar.semantics.symbols import Kind, Symbol
+from grammar.semantics.symbols import Access, Kind, Symbol
 from grammar.semantics.types import BOOL, INT, Array, Type
 from grammar.syntax import ast
 from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cell_layout import Plain
+from interp.bytecode.cell_layout import Plain, flattened, word_of
 from interp.bytecode.compiler.calls import Formals, formals_of
 from interp.bytecode.compiler.code_writer import Writer
 from interp.bytecode.compiler.context import Binding, Context, Deferred, Refusal, Shared
-from interp.bytecode.compiler.data import declare_data, initial_values
 from interp.bytecode.compiler.emitter import Emitter
 from interp.bytecode.compiler.locations import (
     DataCells,
@@ -34,7 +33,15 @@ from interp.bytecode.compiler.statements import Statements
 from interp.bytecode.program import CodeKind, Import, Mode, Program
 from interp.bytecode.verifier.verify import measured
 from interp.program.load import CheckedProgram, Routine
-from interp.program.variables import MOST_CELLS, cells_of_routine, is_complete, too_large
+from interp.program.variables import (
+    MOST_CELLS,
+    cells_of_routine,
+    data_lists,
+    data_variables,
+    is_complete,
+    too_large,
+)
+from interp.tree.memory import initial_data
 from interp.values.faults import LinkError
 
 
@@ -75,9 +82,8 @@ class Project:
 
     def compiled(self, starts: Sequence[Routine]) -> Compiled:
         """Return the compiled program."""
-        declare_data(self._program, self._tables)
         main = self._program.main
-        initial = initial_values(self._shared)
+        initial = tuple(self._initial_values())
         numbers: dict[Symbol, int] = {
             routine.table.routine: self.code_of(routine, ()) for routine in starts
         }
@@ -99,6 +105,22 @@ class Project:
             tuple(self._imports()),
         )
         return Compiled(measured(program), tuple(self._shared.refusals), numbers)
+
+    def _initial_values(self) -> Iterator[tuple[int, int]]:
+        """Assign cells to the variables of data lists; yield their contents as address and word."""
+        program, tables = self._program, self._tables
+        data = initial_data(program)
+        for unit, _ in data_lists(program):
+            for found, type_ in data_variables(program, unit):
+                symbol, first = found.symbol, tables.cells
+                is_global = symbol.access is Access.GLOBAL
+                tables.variable(symbol, type_, unit.module.name, is_global=is_global)
+                cells = flattened(data.places[symbol].get(), type_)
+                yield from (
+                    (at, word_of(raw)) for at, raw in enumerate(cells, first) if raw is not None
+                )
+        for path, line, reason in data.left_out:
+            self._shared.refusals[Refusal(path, line, reason, is_missing=True)] = None
 
     def _imports(self) -> Iterator[Import]:
         """Yield the imported names of modules and routines, except imports without a target."""
