@@ -9,6 +9,7 @@ from grammar.semantics.types import UNKNOWN, Aggregate, Structure, Type
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
 from interp.program.load import Unit
+from interp.values.faults import LinkError
 from interp.values.values import position_type
 
 _CONSTANT = (
@@ -79,14 +80,25 @@ def structure_of(unit: Unit, node: ast.Aggregate, wanted: Type) -> Structure | N
     return position_type(frozenset(component.name.key for component in node.components))
 
 
-def signal_name(unit: Unit, node: ast.Expression) -> str | None:
-    """Return the name of the first signal in an expression, else of its first system variable.
+def signal_name(unit: Unit, node: ast.SignalOn | ast.SignalOff) -> str:
+    """Return the name of the signal that a statement switches, in upper case, as in this file.
 
-    The name is as in this file, in upper case. Return ``None`` if there is neither.
+    It is the first signal in an expression, else its first system variable. Raises `LinkError` if
+    there is neither.
     """
-    names = [one.name for one in walk(node) if isinstance(one, ast.Variable)]
+    match node:
+        case ast.SignalOff(variable=where):
+            pass
+        case ast.SignalOn(keyword="ANOUT", assignment=ast.Assignment(target=where)):
+            pass
+        case ast.SignalOn(assignment=ast.Assignment(value=where)):
+            pass
+    names = [one.name for one in walk(where) if isinstance(one, ast.Variable)]
     for name in names:
         found = unit.found(name)
         if found is not None and isinstance(found.symbol, SignalSymbol):
             return name.key
-    return next((name.key for name in names if name.key.startswith("$")), None)
+    for name in names:
+        if name.key.startswith("$"):
+            return name.key
+    raise LinkError("nothing says which signal is meant")

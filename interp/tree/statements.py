@@ -22,7 +22,7 @@ from interp.tree.places import SystemPlace, fresh, is_left_out, of_type
 from interp.tree.run import Guard, Steps, at_once
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 from interp.values.operators import apply
-from interp.values.values import Value, converted, known
+from interp.values.values import Value, known
 
 
 @dataclass(slots=True, eq=False)
@@ -305,23 +305,8 @@ class Statements(Motions):
 
     def _request(self, node: ast.Statement) -> Steps[None]:
         """Execute a statement that only makes a request."""
-        made = STATEMENT_REQUESTS[type(node)]
-        parts: list[Any] = []
-        for part in made.parts:
-            value = getattr(node, part.field)
-            if part.type is not None:
-                value = converted((yield from self.value(value, part.type)), part.type)
-            parts.append(value)
-        yield made.request(self.at(), *parts)
-        self._suppress(node)
-
-    def _proceed(self, node: ast.OnErrorProceed) -> Steps[None]:
-        yield requests.EmptyError(self.at())
-        self._suppress(node)
-
-    def _suppress(self, node: ast.Node) -> None:
-        """Suppress the error of the next statement, if this one says so [FCT-12]."""
-        if node.span in self.frame.unit.suppressing:
+        yield (yield from self.requested(node))
+        if node.span in self.frame.unit.suppressing:  # the error of the next statement [FCT-12]
             self.run.guard = Guard.NEXT
 
     def _wait_for(self, node: ast.WaitFor) -> Steps[None]:
@@ -352,15 +337,8 @@ _RULES: Mapping[type[Any], _Rule] = {
     ast.Exit: Statements._exit,
     ast.Goto: Statements._goto,
     ast.Return: Statements._return,
-    ast.OnErrorProceed: Statements._proceed,
     ast.WaitFor: Statements._wait_for,
-    ast.SignalOn: Statements.signal_on,
-    ast.SignalOff: Statements.signal_off,
     ast.Motion: Statements.motion,
-    ast.EmilyMotion: Statements.emily_motion,
     ast.SplineBlock: Statements.spline_block,
-    ast.InterruptDeclaration: Statements.interrupt_declaration,
-    ast.InterruptSwitch: Statements.interrupt_switch,
-    ast.Trigger: Statements.trigger,
     **dict.fromkeys(STATEMENT_REQUESTS, Statements._request),
 }

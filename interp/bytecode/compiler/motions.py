@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Any
 
-from grammar.semantics.types import INT, REAL, UNKNOWN, Array, Type
+from grammar.semantics.types import REAL, UNKNOWN, Array, Type
+from grammar.semantics.types import Scalar as Number
 from grammar.syntax import ast
 from grammar.syntax.walk import walk
 from interp.bytecode._generated.opcodes import Op
@@ -32,14 +34,13 @@ from interp.bytecode.program import (
     Mode,
     Record,
 )
+from interp.port.requests import BaseRequest
 from interp.program.literals import literal_value
 from interp.program.reads import is_constant_output, signal_name
+from interp.program.statement_requests import STATEMENT_REQUESTS, Fixed, Part
 from interp.values.faults import Fault, LinkError
 from interp.values.values import EnumValue, converted
 from interp.values.values import Value as Known
-
-#: An item of a spline block.
-_Item = ast.Motion | ast.Trigger | ast.ConstantVelocity | ast.TimeBlock | ast.StopWhen
 
 
 class Motions(CodeMaker):
@@ -61,7 +62,7 @@ class Motions(CodeMaker):
         if auxiliary is not None:
             self._memory.refer(auxiliary)
             parts[2] = self._memory.handed(Reference(auxiliary.type))
-        parts.append(self._optional(node.angle))
+        parts.append(self._optional(node.angle, REAL))
         parts.append(self._values(node.values, is_early=is_early))
         parts.append(Items(tuple(Constant(one) for one in node.criteria)))
         parts.append(Constant(None if node.reference is None else node.reference.name.key))
@@ -116,11 +117,11 @@ class Motions(CodeMaker):
         )
         return kept
 
-    def _optional(self, node: ast.Expression | None) -> Argument:
+    def _optional(self, node: ast.Expression | None, type_: Type) -> Argument:
         if node is None:
             return Constant(None)
-        self._expressions.real(node)
-        return Input(Mode.IN, self._emitter.number(REAL))
+        self._expressions.number(node, type_)
+        return Input(Mode.IN, self._emitter.number(type_))
 
     def _values(self, nodes: tuple[ast.Assignment, ...], *, is_early: bool = False) -> Items:
         """Generate the assignments after WITH [SPL-08]; ``is_early`` as in `_move`."""
@@ -141,11 +142,6 @@ class Motions(CodeMaker):
             found.append(Items((path, self._memory.remote_value(place.type, value, behind))))
         return Items(tuple(found))
 
-    def emily_motion(self, node: ast.EmilyMotion) -> None:
-        """Generate MOVE_EMI."""
-        parts = [self._word(node.device), self._word(node.action)]
-        self._emitter.ask("MoveEmily", *parts, self._optional(node.number))
-
     def _word(self, node: ast.Expression) -> Argument:
         value = self._expressions.value(node)
         if isinstance(value, Reference):
@@ -164,7 +160,11 @@ class Motions(CodeMaker):
         first, items = self._context.line, []
         for at, item in enumerate(node.items, 1):
             self._go_on_at(self._context.unit.line(item), end)
-            items.append(self._item(item, is_early=at < last))
+            if isinstance(item, ast.Motion):
+                parts = self._move(item, is_early=at < last)
+                items.append(Record("Move", self._context.line, parts))
+            else:
+                items.append(self._record(item))
         self._go_on_at(first, end)
         is_approximated = Constant(node.is_approximated)
         self._emitter.ask(
@@ -176,45 +176,34 @@ class Motions(CodeMaker):
             self._context.line = line
             self._emit(Op.AT, line, end)
 
-    def _item(self, node: _Item, *, is_early: bool) -> Record:
-        line = self._context.line
-        match node:
-            case ast.Motion():
-                return Record("Move", line, self._move(node, is_early=is_early))
-            case ast.Trigger():
-                return Record("SetTrigger", line, self._set_trigger(node))
-            case ast.ConstantVelocity():
-                words = (Constant("CONST_VEL"), Constant(node.edge))
-                place = self._optional(node.place)
-                return Record("SplineRange", 0, (*words, place, Constant(node.on_start)))
-            case ast.TimeBlock():
-                words = (Constant("TIME_BLOCK"), Constant(node.edge))
-                value = self._optional(node.value)
-                return Record("SplineRange", 0, (*words, value, Constant(False)))
-        place = self._optional(node.place)
-        condition = self.deferred(node.condition, CodeKind.CONDITION)
-        return Record("SplineStop", 0, (place, Constant(node.on_start), condition))
+    def _record(self, node: ast.Node) -> Record:
+        request = STATEMENT_REQUESTS[type(node)].request
+        line = self._context.line if issubclass(request, BaseRequest) else 0
+        return Record(request.__name__, line, self.parts(node))
 
-    # ----------------------------------------------------------------------- triggers
+    # ----------------------------------------------------------------------- other requests
 
-    def trigger(self, node: ast.Trigger) -> None:
-        """Generate TRIGGER."""
-        self._emitter.ask("SetTrigger", *self._set_trigger(node))
+    def parts(self, node: ast.Node) -> tuple[Argument, ...]:
+        """Generate the parts of a statement of `STATEMENT_REQUESTS`."""
+        return tuple(self._part(node, part) for part in STATEMENT_REQUESTS[type(node)].parts)
 
-    def _set_trigger(self, node: ast.Trigger) -> tuple[Argument, ...]:
-        place = self._optional(node.place)
-        delay = self._optional(node.delay)
-        output = self._output(node.action)
-        priority = self._optional_integer(node.priority)
-        action = self.deferred(node.action, CodeKind.ACTION)
-        words = Constant(node.place_kind), place, Constant(node.on_start)
-        return (*words, delay, action, output, priority)
-
-    def _optional_integer(self, node: ast.Expression | None) -> Argument:
-        if node is None:
-            return Constant(None)
-        self._expressions.integer(node)
-        return Input(Mode.IN, self._emitter.number(INT))
+    def _part(self, node: Any, part: str | Part | Fixed) -> Argument:
+        if not isinstance(part, Part):
+            return Constant(part.value if isinstance(part, Fixed) else getattr(node, part))
+        value = getattr(node, part.field)
+        match part.kind:
+            case "text":
+                return self._word(value)
+            case "output":
+                return self._output(value)
+            case "signal":
+                try:
+                    return Constant(signal_name(self._context.unit, node))
+                except LinkError as error:
+                    raise self._emitter.unlinked(str(error)) from None
+            case "condition" | "action" as kind:
+                return self.deferred(value, CodeKind(kind))
+        return self._optional(value, part.kind)
 
     def deferred(self, node: Deferred, kind: CodeKind) -> Handle:
         """Return an action or a condition as a part of a request."""
@@ -260,43 +249,6 @@ class Motions(CodeMaker):
             return Constant(value)
         raise self._emitter.refuse("a text is the output of a trigger")
 
-    # ----------------------------------------------------------------------- interrupts
-
-    def interrupt_declaration(self, node: ast.InterruptDeclaration) -> None:
-        """Generate INTERRUPT DECL [INT-01]."""
-        number = self._optional_integer(node.number)
-        condition = self.deferred(node.condition, CodeKind.CONDITION)
-        action = self.deferred(node.action, CodeKind.ACTION)
-        self._emitter.ask("DeclareInterrupt", number, Constant(node.is_global), condition, action)
-
-    def interrupt_switch(self, node: ast.InterruptSwitch) -> None:
-        """Generate INTERRUPT ON, OFF, ENABLE, DISABLE [INT-07]."""
-        number = self._optional_integer(node.number)
-        self._emitter.ask("SwitchInterrupt", Constant(node.action), number)
-
-    # ----------------------------------------------------------------------- cyclic signals
-
-    def signal_on(self, node: ast.SignalOn) -> None:
-        """Generate ANIN ON, ANOUT ON, DIGIN ON [IOT-05, IOT-09]."""
-        source = node.assignment.target if node.keyword == "ANOUT" else node.assignment.value
-        name = self._signal_name(source)
-        numbers = [self._optional(one) for one in (node.delay, node.minimum, node.maximum)]
-        cycle = self.deferred(node.assignment, CodeKind.ACTION)
-        words = Constant(node.keyword), Constant(True), Constant(name)
-        self._emitter.ask("SwitchSignal", *words, cycle, *numbers)
-
-    def signal_off(self, node: ast.SignalOff) -> None:
-        """Generate ANIN OFF, ANOUT OFF, DIGIN OFF."""
-        words = Constant(node.keyword), Constant(False), Constant(self._signal_name(node.variable))
-        self._emitter.ask("SwitchSignal", *words, *[Constant(None)] * 4)
-
-    def _signal_name(self, node: ast.Expression) -> str:
-        """Return the name of the signal that an expression denotes."""
-        name = signal_name(self._context.unit, node)
-        if name is None:
-            raise self._emitter.unlinked("nothing says which signal is meant")
-        return name
-
 
 def _parts_of_values(nodes: Iterable[ast.Assignment]) -> Iterator[ast.Expression | None]:
     """Yield the expressions in assignments after WITH: values, and indices of targets."""
@@ -307,14 +259,11 @@ def _parts_of_values(nodes: Iterable[ast.Assignment]) -> Iterator[ast.Expression
         yield node.value
 
 
-def _parts_of(node: _Item) -> Iterator[ast.Expression | None]:
+def _parts_of(node: ast.Node) -> Iterator[ast.Expression | None]:
     """Yield the expressions in a spline item that are evaluated before the request of the block."""
-    match node:
-        case ast.Motion():
-            yield from (node.target, node.auxiliary, *_parts_of_values(node.values), node.angle)
-        case ast.Trigger():
-            yield from (node.place, node.delay, node.priority)
-        case ast.TimeBlock():
-            yield node.value
-        case _:
-            yield node.place
+    if isinstance(node, ast.Motion):
+        yield from (node.target, node.auxiliary, *_parts_of_values(node.values), node.angle)
+        return
+    for part in STATEMENT_REQUESTS[type(node)].parts:
+        if isinstance(part, Part) and isinstance(part.kind, Number):
+            yield getattr(node, part.field)

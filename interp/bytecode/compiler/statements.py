@@ -26,7 +26,7 @@ from interp.bytecode.compiler.locations import (
     SystemVariable,
 )
 from interp.bytecode.compiler.motions import Motions
-from interp.bytecode.program import Argument, CodeKind, Constant, Input, Mode
+from interp.bytecode.program import CodeKind, Constant
 from interp.program.statement_requests import STATEMENT_REQUESTS
 from interp.values.faults import FAULTS
 
@@ -107,15 +107,6 @@ class Statements(CodeMaker):
         elif isinstance(value, Reference):  # nothing takes the reference
             self._emit(Op.CLEAR, self._emitter.number(value.type))
 
-    def _proceed(self, node: ast.OnErrorProceed, _end: Label) -> None:
-        self._emitter.ask("EmptyError")
-        self._suppress(node)
-
-    def _suppress(self, node: ast.Node) -> None:
-        """Suppress the error of the next statement, if this one says so [FCT-12]."""
-        if node.span in self._context.unit.suppressing:
-            self._emit(Op.PROCEED)
-
     def _wait_for(self, node: ast.WaitFor, end: Label) -> None:
         """Generate WAIT FOR; a request before each evaluation lets time pass [CTL-12]."""
         test, again = Label(), Label()
@@ -129,17 +120,10 @@ class Statements(CodeMaker):
 
     def _request(self, node: ast.Statement, _end: Label) -> None:
         """Generate a statement that only makes a request."""
-        made = STATEMENT_REQUESTS[type(node)]
-        parts: list[Argument] = []
-        for part in made.parts:
-            value = getattr(node, part.field)
-            if part.type is None:
-                parts.append(Constant(value))
-            else:
-                self._expressions.number(value, part.type)
-                parts.append(Input(Mode.IN, self._emitter.number(part.type)))
-        self._emitter.ask(made.request.__name__, *parts)
-        self._suppress(node)
+        request = STATEMENT_REQUESTS[type(node)].request
+        self._emitter.ask(request.__name__, *self.motions.parts(node))
+        if node.span in self._context.unit.suppressing:  # the error of the next statement [FCT-12]
+            self._emit(Op.PROCEED)
 
 
 _Rule = Callable[[Statements, Any, Label], None]
@@ -147,14 +131,6 @@ _Rule = Callable[[Statements, Any, Label], None]
 
 def _flow(rule: Callable[[ControlFlow, Any, Label], None]) -> _Rule:
     return lambda self, node, end: rule(self.flow, node, end)
-
-
-def _motion(rule: Callable[[Motions, Any], None]) -> _Rule:
-    return lambda self, node, _end: rule(self.motions, node)
-
-
-def _spline_block(self: Statements, node: ast.SplineBlock, end: Label) -> None:
-    self.motions.spline_block(node, end)
 
 
 _RULES: Mapping[type[Any], _Rule] = {
@@ -169,15 +145,8 @@ _RULES: Mapping[type[Any], _Rule] = {
     ast.Exit: _flow(ControlFlow.exit_loop),
     ast.Goto: _flow(ControlFlow.goto),
     ast.Return: _flow(ControlFlow.return_statement),
-    ast.OnErrorProceed: Statements._proceed,
     ast.WaitFor: Statements._wait_for,
-    ast.SignalOn: _motion(Motions.signal_on),
-    ast.SignalOff: _motion(Motions.signal_off),
-    ast.Motion: _motion(Motions.motion),
-    ast.EmilyMotion: _motion(Motions.emily_motion),
-    ast.SplineBlock: _spline_block,
-    ast.InterruptDeclaration: _motion(Motions.interrupt_declaration),
-    ast.InterruptSwitch: _motion(Motions.interrupt_switch),
-    ast.Trigger: _motion(Motions.trigger),
+    ast.Motion: lambda self, node, _end: self.motions.motion(node),
+    ast.SplineBlock: lambda self, node, end: self.motions.spline_block(node, end),
     **dict.fromkeys(STATEMENT_REQUESTS, Statements._request),
 }
