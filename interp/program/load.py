@@ -391,12 +391,13 @@ def _checked(
     return CheckedProgram(project, first, units, strict, stand_ins)
 
 
-def with_main(program: CheckedProgram, source: Source) -> CheckedProgram:
-    """Return a program with stand-ins after replacing the text of its main file."""
-    project = with_returns(extended(program.project, [File(source.path, _read(source))]))
+def with_main(program: CheckedProgram, syntax: ast.Module) -> CheckedProgram:
+    """Return a program with stand-ins after replacing the syntax tree of its main file."""
+    path = program.main.module.path
+    project = with_returns(extended(program.project, [File(path, syntax)]))
     sources = {unit.source.path: unit.source for unit in program.units.values()}
-    units = _units(project, sources | {source.path: source}, typed_module)
-    main = next(unit for unit in units.values() if unit.source is source)
+    units = _units(project, sources, typed_module)
+    main = next(unit for unit in units.values() if unit.module.path == path)
     return replace(program, project=project, main=main, units=units)
 
 

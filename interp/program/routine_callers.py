@@ -1,15 +1,15 @@
 """Callers for routines with parameters, so that each routine can be run by itself.
 
-A program cannot begin with a routine that has parameters. So a routine is appended to its file that
-declares a variable for each parameter, assigns values to these variables, and calls the routine.
+A program cannot begin with a routine that has parameters. So another one declares a variable for
+each parameter, assigns values to these variables, and calls the routine.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
-from itertools import count, islice, product
-from typing import Final
+from dataclasses import dataclass, fields, replace
+from itertools import chain, count, islice, product
+from typing import Any, Final
 
 from grammar.semantics.types import (
     BOOL,
@@ -24,6 +24,7 @@ from grammar.semantics.types import (
     is_position,
 )
 from grammar.syntax import ast
+from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
 from grammar.syntax.source import Source
 from grammar.syntax.walk import walk
@@ -56,12 +57,19 @@ class Callers:
 
 def with_callers(program: CheckedProgram) -> Callers:
     """Append callers to the main file of a program, one for each routine that needs one."""
-    return _with_callers_added(program, lambda one: not program.can_begin(one))
+    made = _callers(program, lambda one: not program.can_begin(one))
+    source = program.main.source
+    lines = chain.from_iterable(lines for _, lines in made.values())
+    return Callers(
+        replace(source, text="\n".join([source.text, *lines, ""])) if made else source,
+        {name: called for name, (called, _) in made.items()},
+    )
 
 
 def with_caller(program: CheckedProgram, name: str | None = None) -> CheckedProgram:
     """Return a program that can begin with a routine of its main file, by default the first one.
 
+    All that its caller does takes place at the name of the routine: the file itself is as it was.
     A parameter gets the constant that a call in the project passes for it, or the first value that
     a SWITCH of the routine compares it with; points get places within reach. All of them are listed
     as stand-ins. A program is returned unchanged if it can begin without a caller, or if its
@@ -79,21 +87,38 @@ def with_caller(program: CheckedProgram, name: str | None = None) -> CheckedProg
     def point(type_: Structure, name: str) -> str:
         return defaults.usable(type_, name) if is_position(type_) else ""
 
-    made = _with_callers_added(
+    made = _callers(
         program, lambda one: one.node is routine.node, _constants(program, routine), point
     )
-    if not made.called:
+    if not made:
         return program
+    ((name, (_, lines)),) = made.items()
+    module, added = unit.module.syntax, read_module("\n".join([*lines, ""]))
+    assert module is not None, "only what can be read is loaded"
+    assert isinstance(module.content, ast.Program), "it has a routine"
+    assert isinstance(added, ast.Module), "callers can be read"
+    assert isinstance(added.content, ast.Program), "a routine"
+    caller = _placed_at(routine.node.name.span, added.content.routines[0])
+    content = replace(module.content, routines=(*module.content.routines, caller))
     stand_ins = tuple(
         StandIn(one.name.text, "variable", "argument", unit.module.path, unit.line(routine.node))
         for one in routine.node.parameters
     )
-    callers = {called.upper(): caller for caller, called in made.called.items()}
     return replace(
-        with_main(program, made.source),
+        with_main(program, replace(module, content=content)),
         stand_ins=(*program.stand_ins, *stand_ins),
-        callers=callers,
+        callers={routine.node.name.key: name},
     )
+
+
+def _placed_at(span: ast.Span, part: Any) -> Any:
+    """Return a part of a syntax tree as if all of it stood at one place: the file has no more."""
+    if isinstance(part, tuple):
+        return tuple(_placed_at(span, one) for one in part)
+    if not isinstance(part, ast.Node):
+        return part
+    inner = {one.name: _placed_at(span, getattr(part, one.name)) for one in fields(part)}
+    return replace(part, **(inner | {"span": span}))
 
 
 def _constants(program: CheckedProgram, routine: Routine) -> Mapping[str, str]:
@@ -116,29 +141,26 @@ def _constants(program: CheckedProgram, routine: Routine) -> Mapping[str, str]:
     return known
 
 
-def _with_callers_added(
+def _callers(
     program: CheckedProgram,
     is_called: Callable[[Routine], bool],
     known: Mapping[str, str] | None = None,
     point: _MakeValue = lambda _type, _name: "",
-) -> Callers:
-    """Return the main file with callers appended; ``known`` are values of parameters."""
-    unit = program.main
-    parts, called = [unit.source.text], {}
-    routines = program.routines_of(unit)
+) -> dict[str, tuple[str, list[str]]]:
+    """Return callers by name: the routine that each calls, and its lines.
+
+    ``known`` are values of parameters.
+    """
+    found = {}
+    routines = program.routines_of(program.main)
     taken = {routine.node.name.key for routine in routines}
     names = (name for number in count() if (name := f"{_PREFIX}{number}") not in taken)
     for name, routine in zip(names, routines, strict=False):
-        lines = (
-            _caller_lines(program, routine, name, known or {}, point)
-            if is_called(routine)
-            else None
-        )
-        if lines is not None:
-            parts += lines
-            called[name] = routine.name
-    source = replace(unit.source, text="\n".join([*parts, ""])) if called else unit.source
-    return Callers(source, called)
+        if is_called(routine):
+            lines = _caller_lines(program, routine, name, known or {}, point)
+            if lines is not None:
+                found[name] = routine.name, lines
+    return found
 
 
 def _caller_lines(

@@ -3,6 +3,8 @@
 from grammar.semantics.predefined import System
 from grammar.semantics.types import INT, UNKNOWN, Array, Enumeration, Member, Structure
 from grammar.syntax.source import Source
+from grammar.syntax.unparse import unparse
+from grammar.syntax.walk import walk
 from interp.program.load import load
 from interp.program.routine_callers import with_caller, with_callers
 from interp.program.variables import cells, is_complete, is_referable
@@ -35,10 +37,14 @@ def test_a_program_begins_with_arguments_that_stand_in() -> None:
     other = "DEF other()\nINT I\njob(I,I)\njob(-I,I,,FALSE)\njob(7,I,,TRUE)\nEND\n"
     sources = [Source(text, "job.src"), Source(other, "other.src")]
     program = with_caller(load(sources, "job.src", strict=False, stands_in=True))
-    added = program.main.source.text[len(text) :].split("\n")
-    assert {"P1=7", "P2=4", "P4=FALSE"} <= set(added)
-    assert any(line.startswith("P3={X ") for line in added)
-    assert "KRL_CALLS_0" == program.start().name
+    start, syntax = program.start(), program.main.module.syntax
+    assert syntax is not None
+    written = unparse(syntax).split("\n")
+    assert {"P1 = 7", "P2 = 4", "P4 = FALSE"} <= {line.strip() for line in written}
+    assert any("P3 = {X " in line for line in written)
+    assert "KRL_CALLS_0" == start.name
+    assert text == program.main.source.text
+    assert {1} == {start.unit.line(one) for one in walk(start.node)}
     assert ["N", "SIDE", "P", "F"] == [
         one.name for one in program.stand_ins if one.origin == "argument"
     ]
