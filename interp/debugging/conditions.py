@@ -15,7 +15,7 @@ from grammar.syntax.build import read_module
 from grammar.syntax.walk import left_chain
 from interp.port.executor import Reader
 from interp.port.inspection import RELATIONS, Guard, InspectedValue
-from interp.port.requests import Path
+from interp.port.requests import Path, path_text
 from interp.program.literals import LITERALS, known_enumeration
 from interp.values.faults import LinkError, RuntimeFailure
 from interp.values.operators import apply, apply_unary
@@ -52,7 +52,9 @@ def guard_of(text: str) -> Guard | None:
     try:
         match parsed(text):
             case ast.Binary(operator=relation, left=left, right=right) if relation in RELATIONS:
-                name = _text(_Evaluation(lambda _text: None, None, lambda _name: None).steps(left))
+                name = path_text(
+                    _Evaluation(lambda _text: None, None, lambda _name: None).steps(left)
+                )
                 match right:
                     case ast.IntegerLiteral(value=number) if number < 2**31:
                         return Guard(name, relation, number)
@@ -93,7 +95,7 @@ def place_of(node: ast.Expression, look: _Look, read: Reader | None, signal: _Si
     evaluation = _Evaluation(look, read, signal)
     steps = evaluation.steps(node)
     path = evaluation.system_path(steps)
-    return _text(steps) if path is None else path
+    return path_text(steps) if path is None else path
 
 
 class _Evaluation:
@@ -156,7 +158,7 @@ class _Evaluation:
                 )
             asked: Value = self._read(path)
             return asked
-        text = _text(steps)
+        text = path_text(steps)
         seen = self._look(text)
         if seen is None:
             raise LinkError(f"{text} is not known here")
@@ -186,18 +188,3 @@ class _Evaluation:
                 given = [index(self.value(one)) for one in node.indices if one is not None]
                 return (*self.steps(node.base), *given)
         raise LinkError("only a variable has parts")
-
-
-def _text(steps: Path) -> str:
-    """Return a path as text: ``("A", 1, 2, "X")`` becomes ``A[1,2].X``."""
-    text, indices = str(steps[0]), list[int]()
-    for step in (*steps[1:], ""):
-        if isinstance(step, int):
-            indices.append(step)
-            continue
-        if indices:
-            text += f"[{','.join(map(str, indices))}]"
-            indices.clear()
-        if step:
-            text += f".{step}"
-    return text

@@ -11,6 +11,8 @@ trigger) is passed as a `CodeHandle`, which only the executor can interpret.
 
 from __future__ import annotations
 
+import re
+from itertools import groupby
 from typing import Any
 
 from support.lazy_dataclass import dataclass
@@ -21,6 +23,35 @@ Value = Any
 #: A system variable, or a part of one: its name in upper case, then indices and member names, as in
 #: ``("$IN", 3)``, ``("$VEL", "CP")``, ``("$TOOL",)``.
 Path = tuple[str | int, ...]
+#: The text of a variable of the program or of a part of one; an array may have empty brackets.
+_WRITTEN = re.compile(
+    r"\s*([A-Z_]\w*(?:\.\w+|\[\s*\d{1,9}(?:\s*,\s*\d{1,9}){0,2}\s*\])*)(?:\[[\s,]*\])?\s*",
+    re.IGNORECASE | re.ASCII,
+)
+
+
+def path_of(text: str) -> Path | None:
+    """Return the path that ``A[1,2].X`` is the text of, in upper case, or ``None`` if it is none.
+
+    VARSTATE, VARTYPE and debuggers name variables so [TYP-18]; system variables are not meant.
+    """
+    match = _WRITTEN.fullmatch(text)
+    steps = re.findall(r"\.?\w+", match[1].upper(), re.ASCII) if match else ()
+    return tuple(int(one) if one.isdigit() else one.removeprefix(".") for one in steps) or None
+
+
+def path_text(path: Path) -> str:
+    """Return a path in the notation of KRL: ``$OUT[3]``, ``A[1,2].X``, ``$IN[1] TO $IN[8]``."""
+    match path:
+        case [str() as name, int() as first, "TO", int() as last] if name.startswith("$"):
+            return f"{name}[{first}] TO {name}[{last}]"
+    text = str(path[0])
+    for are_indices, steps in groupby(path[1:], lambda step: isinstance(step, int)):
+        texts = map(str, steps)
+        text += f"[{','.join(texts)}]" if are_indices else f".{'.'.join(texts)}"
+    return text
+
+
 #: The content of an array of CHAR. Any other ``str`` in a request is a word of the source.
 Text = str
 

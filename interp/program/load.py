@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import field, replace
+from enum import Enum
 from functools import cached_property
 from itertools import chain
 
@@ -66,6 +67,14 @@ class Limits:
         return BudgetExhausted(
             f"it has not ended or waited after functions as long as {self.functions:,} statements"
         )
+
+
+class Guard(Enum):
+    """Whether ON_ERROR_PROCEED applies: to the next statement, or to the present one."""
+
+    OFF = 0
+    NEXT = 1
+    NOW = 2
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.references import Space
 from grammar.syntax.source import Source, names_in_text
-from grammar.syntax.walk import walk
+from grammar.syntax.walk import root_variable, walk
 
 #: Makes a value, as it is written, of a type and for a name.
 MakeValue = Callable[[Type, str], str]
@@ -113,9 +113,8 @@ def _set_by(node: ast.Node) -> set[str]:
 
 
 def _root(node: ast.Expression) -> str:
-    while isinstance(node, ast.Subscript | ast.Member):
-        node = node.base
-    return node.name.key if isinstance(node, ast.Variable) else ""
+    root = root_variable(node)
+    return root.name.key if root else ""
 
 
 def with_values(

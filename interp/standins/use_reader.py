@@ -23,7 +23,7 @@ from grammar.semantics.types import (
 )
 from grammar.syntax import ast
 from grammar.syntax.references import Space
-from grammar.syntax.walk import left_chain, walk
+from grammar.syntax.walk import left_chain, root_variable, walk
 from interp.standins.uses import FOLDER, DataUse, Uses
 
 _LOGICAL = frozenset({"AND", "OR", "EXOR"})
@@ -282,11 +282,10 @@ class _Reader:
 
     def _is_variable(self, node: ast.Expression) -> bool:
         """Return whether a call can change an expression; system variables are excluded."""
-        while isinstance(node, ast.Subscript | ast.Member):
-            node = node.base
-        if not isinstance(node, ast.Variable) or node.name.text.startswith("$"):
+        root = root_variable(node)
+        if root is None or root.name.text.startswith("$"):
             return False
-        found = self._checked.resolution.found(node.name)
+        found = self._checked.resolution.found(root.name)
         return found is not None and found.module is not None and found.symbol.kind in _PLAIN
 
     # ------------------------------------------------------------------------- expressions

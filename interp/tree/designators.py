@@ -5,9 +5,7 @@ Indices are evaluated from left to right.
 
 from __future__ import annotations
 
-import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import PurePosixPath
 
@@ -17,7 +15,7 @@ from grammar.semantics.types import BOOL, INT, UNKNOWN, Type
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 from interp.port.inspection import InspectedValue
-from interp.port.requests import At, Read, StopAdvance, Write
+from interp.port.requests import At, Read, StopAdvance, Write, path_of
 from interp.program.variables import (
     is_complete,
     is_complete_parameter,
@@ -29,13 +27,6 @@ from interp.tree.places import LocalPlace, Place, SystemPlace, element, member, 
 from interp.tree.run import Frame, ProgramState, Steps
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.values import Value, copied, index
-
-#: A variable as VARSTATE and VARTYPE receive it as text [TYP-18], and its parts.
-_WRITTEN = re.compile(
-    r"\s*([A-Z_]\w*(?:\.\w+|\[\s*\d{1,9}(?:\s*,\s*\d{1,9}){0,2}\s*\])*)(?:\[[\s,]*\])?\s*",
-    re.IGNORECASE | re.ASCII,
-)
-_STEP = re.compile(r"(\.?)(\w+)|\[([\s\d,]*)\]", re.ASCII)
 
 
 class Designators(ABC):
@@ -189,33 +180,14 @@ class Designators(ABC):
 
     def place_of(self, text: str) -> LocalPlace | None:
         """Return the place of the variable with this name in the frame, as `find` does."""
-        return _find_text(text, self._named)
-
-    def _named(self, key: str) -> Place | None:
-        answer = self.frame.scope.find(Space.VALUE, key)
-        return self.declared(answer) if isinstance(answer, Found) else None
-
-
-def _find_text(text: str, find: Callable[[str], Place | None]) -> LocalPlace | None:
-    """Return the place of the variable, or part of one, that ``text`` names; ``None`` if unknown.
-
-    The name of an array may end in empty brackets. ``find`` returns the place of a variable by its
-    name in upper case. System variables are not looked up.
-    """
-    match = _WRITTEN.fullmatch(text)
-    if match is None:
-        return None
-    place: Place | None = None
-    try:
-        for _, name, indices in _STEP.findall(match[1].upper()):
-            if place is None:
-                place = find(name)
-            elif indices:
-                place = element(place, [int(one) for one in indices.split(",")])
-            else:
-                place = member(place, name)
-            if not isinstance(place, LocalPlace):
-                return None
-    except (Fault, LinkError):  # there is no such part
-        return None
-    return place if isinstance(place, LocalPlace) else None
+        root, *steps = path_of(text) or ("",)
+        answer = self.frame.scope.find(Space.VALUE, str(root))
+        try:
+            place = self.declared(answer) if isinstance(answer, Found) else None
+            for step in steps:
+                if not isinstance(place, LocalPlace):
+                    break
+                place = element(place, [step]) if isinstance(step, int) else member(place, step)
+        except (Fault, LinkError):  # there is no such part
+            return None
+        return place if isinstance(place, LocalPlace) else None

@@ -25,11 +25,11 @@ from interp.port.requests import (
     StopAdvance,
     Value,
 )
-from interp.program.load import CheckedProgram, Limits
+from interp.program.load import CheckedProgram, Guard, Limits
 from interp.program.statement_paths import routine_at, way_to
 from interp.program.variables import too_large
 from interp.tree.memory import fill_data
-from interp.tree.run import Call, Frame, Guard, ProgramState, Steps
+from interp.tree.run import Call, Frame, ProgramState, Steps
 from interp.tree.statements import Resumed, Selected, Statements
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
-from enum import Enum
 from typing import Any, NamedTuple, TypeVar
 
 from grammar.semantics.scopes import Scope
@@ -18,7 +17,7 @@ from grammar.semantics.types import Type
 from grammar.syntax import ast
 from interp.port.events import Sink, wanting
 from interp.port.requests import At, CodeHandle, Request, Slice
-from interp.program.load import CheckedProgram, Limits, Routine, Unit
+from interp.program.load import CheckedProgram, Guard, Limits, Routine, Unit
 from interp.program.variables import MOST_CELLS, cells_of_routine
 from interp.tree.places import LocalPlace, Place, SystemPlace
 from interp.values.builtins import WEIGHTS, Randomness
@@ -76,14 +75,6 @@ class DeferredCode:
 
     node: ast.Expression | ast.Assignment | ast.CallStatement | ast.Brake
     frame: Frame
-
-
-class Guard(Enum):
-    """Whether ON_ERROR_PROCEED applies: to the next statement, or to the present one."""
-
-    OFF = 0
-    NEXT = 1
-    NOW = 2
 
 
 class Round(NamedTuple):

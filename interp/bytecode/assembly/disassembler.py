@@ -16,7 +16,7 @@ from interp.bytecode.assembly.syntax import (
     label_text,
     labels,
     name_text,
-    path_text,
+    part_text,
     real_text,
     string_text,
 )
@@ -247,7 +247,7 @@ class _Writer:
             type_ = self._program.types[self._program.data[number].type]
             path = path_to(type_, address - self._program.addresses[number], wanted)
             if path is not None:
-                return self._data[number] + path_text(path)
+                return self._data[number] + part_text(path)
         return f"+{address}"
 
 
@@ -272,7 +272,7 @@ class _Frame:
                 type_ = self._program.types[slot.variable.type]
                 path = path_to(type_, inside, wanted)
                 if path is not None:
-                    return self._names[number] + path_text(path)
+                    return self._names[number] + part_text(path)
         return f"+{offset}"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from grammar.semantics.types import SCALARS, Array, Enumeration, Structure, Type
-from interp.bytecode.assembly.syntax import Key, Line, key, path_text
+from interp.bytecode.assembly.syntax import Key, Line, key, part_text
 from interp.bytecode.cell_layout import offset_of, size
 from interp.bytecode.program import BASIC_TYPES, Mode
 
@@ -166,7 +166,7 @@ def part_offset(line: Line, type_: Type) -> int:
             break
     found = offset_of(type_, path)
     if found is None:
-        raise line.error(f"{type_} has no part {path_text(tuple(path))}")
+        raise line.error(f"{type_} has no part {part_text(tuple(path))}")
     return found[0]
 
 

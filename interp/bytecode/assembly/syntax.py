@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from interp.bytecode.cell_layout import bits_of, real_of
 from interp.bytecode.program import printable
-from interp.port.requests import Path
+from interp.port.requests import Path, path_text
 from interp.values.faults import Fault
 from interp.values.values import single
 
@@ -210,17 +210,9 @@ def name_text(name: str) -> str:
     return name if _PLAIN.fullmatch(name) else string_text(name)
 
 
-def path_text(path: Path) -> str:
+def part_text(path: Path) -> str:
     """Return what follows a name, such as ``.X[1,2]``."""
-    text = ""
-    for step in path:
-        if isinstance(step, str):
-            text += f".{name_text(step)}"
-        elif text.endswith("]"):
-            text = f"{text[:-1]},{step}]"
-        else:
-            text += f"[{step}]"
-    return text
+    return path_text(("", *(name_text(one) if isinstance(one, str) else one for one in path)))
 
 
 def labels(names: Iterable[str]) -> list[Label]:

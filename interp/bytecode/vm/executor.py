@@ -22,7 +22,6 @@ from interp.bytecode.vm.frames import Frames
 from interp.bytecode.vm.names import InFrame, Names
 from interp.bytecode.vm.services import NOT_IN_CONDITIONS, Services
 from interp.bytecode.vm.state import Completion, Operation, State
-from interp.bytecode.vm.statement_budget import Guard
 from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.port.events import Sink
 from interp.port.executor import Reader
@@ -40,7 +39,7 @@ from interp.port.requests import (
     Value,
     Write,
 )
-from interp.program.load import Limits
+from interp.program.load import Guard, Limits
 from interp.values.builtins import Randomness
 from interp.values.faults import Fault, LinkError, RuntimeFailure
 from support.lazy_dataclass import dataclass

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
@@ -21,15 +20,9 @@ from interp.bytecode.cell_layout import (
 from interp.bytecode.program import Local, Mode, Parameter, Program, Slot
 from interp.bytecode.vm.state import State
 from interp.port.inspection import InspectedValue
-from interp.port.requests import Path
+from interp.port.requests import Path, path_of
 from interp.values.faults import LinkError
 from interp.values.values import Value
-
-_WRITTEN = re.compile(
-    r"\s*([A-Z_]\w*(?:\.\w+|\[\s*\d{1,9}(?:\s*,\s*\d{1,9}){0,2}\s*\])*)(?:\[[\s,]*\])?\s*",
-    re.IGNORECASE | re.ASCII,
-)
-_STEP = re.compile(r"\w+", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,12 +138,10 @@ class Names:
 
     def _place(self, text: str) -> tuple[Type, int | None] | None:
         """Return type and address of what a text denotes; the address is ``None`` if left out."""
-        match = _WRITTEN.fullmatch(text)
-        if match is None:
+        path = path_of(text)
+        if path is None:
             return None
-        root, *steps = [
-            int(step) if step.isdigit() else step for step in _STEP.findall(match[1].upper())
-        ]
+        root, *steps = path
         place = self._variable(str(root))
         if place is None or place[1] is None:
             return None if steps else place
@@ -162,7 +153,7 @@ class Names:
 
         The address of a local variable is its distance from the first cell of the frame.
         """
-        slot = self._slot(str(_STEP.findall(text.upper())[0]))
+        slot = self._slot(_root(text))
         if slot is not None and self._is_reference(slot):
             return None
         type_, address = self._place(text) or (None, None)
@@ -173,7 +164,7 @@ class Names:
         found = self.find(text)
         if found is None:
             return None
-        root = str(_STEP.findall(text.upper())[0])
+        root = _root(text)
         number = None if self._slot(root) else self._number(root)
         if number is None:
             return InspectedValue(*found, "")
@@ -231,3 +222,9 @@ class Names:
         if path is None:
             return None
         return (name.upper(), *path), value_at(self._state.cells, address, type_)
+
+
+def _root(text: str) -> str:
+    """Return the name with which the text of a variable begins."""
+    path = path_of(text)
+    return str(path[0]) if path else ""

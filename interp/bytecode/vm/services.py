@@ -13,13 +13,13 @@ from interp.bytecode.program import Argument, Code, Input, Instruction, Mode, Pr
 from interp.bytecode.vm.names import Names
 from interp.bytecode.vm.request_marshalling import RequestBuilder
 from interp.bytecode.vm.state import Operation, State, computed
-from interp.bytecode.vm.statement_budget import Counter, Guard, Pause
+from interp.bytecode.vm.statement_budget import Counter, Pause
 from interp.bytecode.vm.value_marshalling import Block, Change, Entry, arguments_of
 from interp.port import requests
 from interp.port.events import Sink, wanting
 from interp.port.requests import At, MoveEmily, Request, Slice, StopAdvance, Value, Write
 from interp.port.requests import CodeHandle as HandedOver
-from interp.program.load import Limits
+from interp.program.load import Guard, Limits
 from interp.values.builtins import FUNCTIONS, WEIGHTS, Surroundings, call
 from interp.values.faults import BudgetExhausted, LinkError
 from interp.values.values import converted, text_of

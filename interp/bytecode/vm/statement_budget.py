@@ -22,18 +22,10 @@ from enum import Enum
 from typing import Final
 
 from interp.bytecode.vm.state import State
-from interp.program.load import Limits
+from interp.program.load import Guard, Limits
 
 #: The largest number in the state, as C has 32 bits.
 _LARGEST: Final = 2**31 - 1
-
-
-class Guard(Enum):
-    """Whether ON_ERROR_PROCEED is active, or becomes active with the next statement."""
-
-    OFF = 0
-    NEXT = 1
-    NOW = 2
 
 
 class Pause(Enum):

@@ -25,8 +25,8 @@ from typing import Final
 
 from interp.controller.inputs.input_script import Assign, Script
 from interp.controller.state.state import ControllerState
-from interp.controller.state.trace import TaskName, path_text
-from interp.port.requests import At, Path
+from interp.controller.state.trace import TaskName
+from interp.port.requests import At, Path, path_text
 from support.lazy_dataclass import dataclass
 
 #: The actions of the operator and of the cell, as lines of a script.

@@ -20,7 +20,6 @@ from interp.controller.motion.positions import FramesInForce, Positions, constan
 from interp.controller.state.messages import message_fault, own_fault
 from interp.controller.state.state import ControllerState
 from interp.controller.state.tasks import Task
-from interp.controller.state.trace import path_text
 from interp.port.requests import (
     At,
     Move,
@@ -29,6 +28,7 @@ from interp.port.requests import (
     SetTrigger,
     SplineStop,
     Value,
+    path_text,
 )
 from interp.robot.api.commands import (
     CallCommand,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 from grammar.semantics.assignability import assignable
 from grammar.semantics.predefined import PredefinedFunction, System
 from grammar.semantics.types import UNKNOWN
-from interp.controller.inputs.channels import Channels, Waiting
+from interp.controller.inputs.channels import Arguments, Changes, Channels, Waiting
 from interp.controller.motion.advance_run import AdvanceRun
 from interp.controller.motion.arm_control import ArmControl
 from interp.controller.motion.motion_builder import target_of
@@ -116,15 +116,6 @@ class PredefinedRoutines:
                 self._state.signals.pulse(number, level, float(seconds))
                 return None, {}
         raise fault("argument")
-
-    def _open(self, _task: Task, request: Invoke) -> Outcome:
-        return None, self._channels.open(request.arguments)
-
-    def _close(self, _task: Task, request: Invoke) -> Outcome:
-        return None, self._channels.close(request.arguments)
-
-    def _send(self, _task: Task, request: Invoke) -> Outcome:
-        return None, self._channels.write(request.arguments)
 
     def _receive(self, _task: Task, request: Invoke) -> Outcome | Blocked:
         channels, clock = self._channels, self._state.clock
@@ -316,21 +307,6 @@ class PredefinedRoutines:
             return self._state.profile.sizes[_SIZES[name]], {}
         return self._state.variables.size(f"${name}"), {}
 
-    def _receive_mailbox(self, _task: Task, _request: Invoke) -> Outcome:
-        """MBX_REC: return 1 because no message has come (unconfirmed); a message would be 0."""
-        return 1, {}
-
-    def _system_state(self, _task: Task, _request: Invoke) -> Outcome:
-        """GETSYSSTATE: return that the state is known, and 0 for no fault (unconfirmed)."""
-        return True, {1: 0, 2: 0.0}
-
-    def _sync(self, _task: Task, _request: Invoke) -> Outcome:
-        """SYNC: return 0, because there is no other robot."""
-        return 0, {}
-
-    def _no(self, _task: Task, _request: Invoke) -> Outcome:
-        return False, {}
-
 
 def _checked(entry: PredefinedFunction, request: Invoke) -> Invoke:
     """Return a request with ``None`` for each argument that is left out at the end.
@@ -381,11 +357,30 @@ def _with_parameters(text: str, parameters: Any) -> str:
 
 
 _Rule = Callable[[PredefinedRoutines, Task, Invoke], Outcome | Blocked]
+#: Routines whose result and new values of arguments are always the same: there is no mailbox
+#: message (unconfirmed; a message would be 0), no fault of the system (unconfirmed), no other robot
+#: to wait for, and no key is pressed.
+_ALWAYS: Mapping[str, Outcome] = {
+    "MBX_REC": (1, {}),
+    "GETSYSSTATE": (True, {1: 0, 2: 0.0}),
+    "SYNC": (0, {}),
+    "IS_KEY_PRESSED": (False, {}),
+}
+
+
+def _of_channels(rule: Callable[[Channels, Arguments], Changes]) -> _Rule:
+    return lambda routines, _task, request: (None, rule(routines._channels, request.arguments))
+
+
+def _always(outcome: Outcome) -> _Rule:
+    return lambda _routines, _task, _request: outcome
+
+
 _RULES: Mapping[str, _Rule] = {
     "PULSE": PredefinedRoutines._pulse,
-    "COPEN": PredefinedRoutines._open,
-    "CCLOSE": PredefinedRoutines._close,
-    "CWRITE": PredefinedRoutines._send,
+    "COPEN": _of_channels(Channels.open),
+    "CCLOSE": _of_channels(Channels.close),
+    "CWRITE": _of_channels(Channels.write),
     "CREAD": PredefinedRoutines._receive,
     "SET_KRLMSG": PredefinedRoutines._message,
     "SET_KRLDLG": PredefinedRoutines._dialogue,
@@ -404,8 +399,5 @@ _RULES: Mapping[str, _Rule] = {
     "WSPACEGIVE": PredefinedRoutines._workspace,
     "WSPACETAKE": PredefinedRoutines._workspace,
     "GETVARSIZE": PredefinedRoutines._size,
-    "IS_KEY_PRESSED": PredefinedRoutines._no,
-    "MBX_REC": PredefinedRoutines._receive_mailbox,
-    "GETSYSSTATE": PredefinedRoutines._system_state,
-    "SYNC": PredefinedRoutines._sync,
+    **{name: _always(outcome) for name, outcome in _ALWAYS.items()},
 }

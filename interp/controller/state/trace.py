@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
 from interp.port.events import EVERY_KIND, Kind
-from interp.port.requests import At, Path, Value
+from interp.port.requests import At, Path, Value, path_text
 from interp.values.json_form import to_json
 
 TaskName = Literal["robot", "submit"]
@@ -57,21 +57,6 @@ class TraceEvent:
         """Return the event as a line of JSON, without the line end."""
         head = {"t": self.time, "task": self.task, "kind": self.kind, "at": self.place}
         return _json({**head, **self.fields})
-
-
-def path_text(path: Path) -> str:
-    """Return a path in the notation of KRL: ``$OUT[3]``, ``A[1,2].X``, ``$IN[1] TO $IN[8]``."""
-    if len(path) == 4 and path[2] == "TO":
-        return f"{path[0]}[{path[1]}] TO {path[0]}[{path[3]}]"
-    text, indices = str(path[0]), []
-    for step in (*path[1:], ""):
-        if isinstance(step, int):
-            indices.append(str(step))
-            continue
-        text += f"[{','.join(indices)}]" if indices else ""
-        indices = []
-        text += f".{step}" if step else ""
-    return text
 
 
 class Trace:
