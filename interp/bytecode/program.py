@@ -11,9 +11,11 @@ Nothing is checked here, see `interp.bytecode.verifier.verify`.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from enum import Enum
 from functools import cached_property
+from operator import attrgetter
+from typing import ClassVar
 
 from grammar.semantics.types import SCALARS, Type
 from interp.bytecode._generated.opcodes import Op
@@ -148,7 +150,7 @@ def variables(code: Code) -> tuple[Parameter | Local, ...]:
     return (*code.parameters, *code.locals)
 
 
-def stack_cells(given: Parameter | Input) -> int:
+def stack_cells(given: Parameter | Local | Input) -> int:
     """Return the number of stack cells of an argument; a structure is passed by reference."""
     return 1 + given.dimensions
 
@@ -206,6 +208,8 @@ class Parameter:
 class Local:
     """A local variable; it has no value when the frame is created."""
 
+    mode: ClassVar[Mode] = Mode.IN
+    dimensions: ClassVar[int] = 0
     name: str
     type: int
 
@@ -309,10 +313,15 @@ class Program:
 
     def width(self, variable: Parameter | Local) -> int:
         """Return the number of cells of a parameter or local in its frame."""
-        if isinstance(variable, Parameter) and variable.mode is not Mode.IN:
-            return stack_cells(variable)
-        return size(self.types[variable.type])
+        is_value = variable.mode is Mode.IN
+        return size(self.types[variable.type]) if is_value else stack_cells(variable)
 
     def frame_size(self, code: Code) -> int:
         """Return the number of cells of a frame of the code object."""
-        return sum(map(self.width, code.parameters)) + sum(map(self.width, code.locals))
+        return sum(map(self.width, variables(code)))
+
+
+def slot_at(slots: Sequence[Slot], place: int) -> Slot | None:
+    """Return the parameter or local to which a cell of a frame belongs, or ``None``."""
+    found = slots[bisect_right(slots, place, key=attrgetter("offset")) - 1] if slots else None
+    return found if found and 0 <= place - found.offset < found.cells else None

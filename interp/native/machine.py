@@ -9,7 +9,7 @@ something, and returns the operation that does it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from enum import IntEnum
 from typing import Final, cast, overload
 
@@ -21,7 +21,7 @@ from interp.bytecode.vm import executor as vm
 from interp.bytecode.vm.frames import Frames
 from interp.bytecode.vm.names import InFrame, Names
 from interp.bytecode.vm.services import Services
-from interp.bytecode.vm.state import Call, Completion, OperandStack, Operation, State
+from interp.bytecode.vm.state import Call, Completion, OperandStack, Operation, State, raising, then
 from interp.bytecode.vm.threaded_code import ThreadedCode
 from interp.native._core import Core
 from interp.port.events import Kind, wanting
@@ -219,9 +219,9 @@ class _NativeCode:
         after = self._running(step + 1)
         instruction = self._program.codes[code].instructions[place]
         if matter == _Matter.CALL:
-            return _then(lambda: services.tell_call(instruction.operands[0]), after)
+            return then(lambda: services.tell_call(instruction.operands[0]), after)
         if matter == _Matter.LEAVE:
-            return _then(services.tell_leave, after)
+            return then(services.tell_leave, after)
         match instruction.op:
             case Op.LINE:
                 return services.line(place, after)
@@ -232,24 +232,9 @@ class _NativeCode:
             case Op.PROCEED:
                 return services.proceed(after)
             case Op.UNLINKED:
-                return self._unlinked(instruction.operands[0])
+                text = self._program.texts[instruction.operands[0]]
+                return raising(lambda: LinkError(text))
         return services.tell(instruction, after)
-
-    def _unlinked(self, number: int) -> Operation:
-        text = self._program.texts[number]
-
-        def operation() -> Operation:
-            raise LinkError(text)
-
-        return operation
-
-
-def _then(act: Callable[[], None], after: Operation) -> Operation:
-    def operation() -> Operation:
-        act()
-        return after
-
-    return operation
 
 
 class _Frames(Frames):

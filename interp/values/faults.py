@@ -14,19 +14,14 @@ from types import MappingProxyType
 class RuntimeFailure(Exception):
     """Base of everything that ends a run; its text is one clear line."""
 
-    @property
-    def is_of_statement(self) -> bool:
-        """Return whether only one statement has failed, so that later ones may still succeed."""
-        return False
+    #: Whether only one statement has failed, so that later ones may still succeed.
+    is_of_statement = False
 
 
 class LinkError(RuntimeFailure):
     """The program cannot run: a name it uses is declared nowhere, or the check found an error."""
 
-    @property
-    def is_of_statement(self) -> bool:
-        """See `RuntimeFailure`."""
-        return True
+    is_of_statement = True
 
 
 class Fault(RuntimeFailure):
@@ -44,11 +39,7 @@ class Fault(RuntimeFailure):
         self.text = text
         self.number = number
         self.rules = rules
-
-    @property
-    def is_of_statement(self) -> bool:
-        """Return whether only one statement has failed: not so for a stack overflow."""
-        return self.slug != "stack"
+        self.is_of_statement = slug != "stack"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Fault) and (self.slug, self.text) == (other.slug, other.text)

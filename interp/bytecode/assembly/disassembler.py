@@ -7,7 +7,6 @@ rest.
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 
 from grammar.semantics.types import CHAR, INT, REAL, Array, Enumeration, Structure, Type
@@ -37,6 +36,7 @@ from interp.bytecode.program import (
     Parameter,
     Program,
     Record,
+    slot_at,
     variables,
 )
 from interp.bytecode.verifier.successors import targets
@@ -257,22 +257,19 @@ class _Frame:
     def __init__(self, program: Program, code: Code, names: Sequence[str]) -> None:
         self._program = program
         self._slots = program.slots(code)
-        self._starts = [slot.offset for slot in self._slots]
-        self._names = names
+        self._names = dict(zip((slot.offset for slot in self._slots), names, strict=True))
 
     def place(self, offset: int, wanted: Type | None) -> str:
-        number = bisect_right(self._starts, offset) - 1
-        if number >= 0:
-            slot = self._slots[number]
+        slot = slot_at(self._slots, offset)
+        if slot is not None:
             inside = offset - slot.offset
-            if isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN:
-                if inside == 0:
-                    return self._names[number]
-            elif inside < slot.cells:
+            if slot.variable.mode is not Mode.IN and inside == 0:
+                return self._names[offset]
+            if slot.variable.mode is Mode.IN:
                 type_ = self._program.types[slot.variable.type]
                 path = path_to(type_, inside, wanted)
                 if path is not None:
-                    return self._names[number] + part_text(path)
+                    return self._names[slot.offset] + part_text(path)
         return f"+{offset}"
 
 

@@ -9,7 +9,7 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.assembly.symbols import Symbols, constant_word, looked_up, part_offset
 from interp.bytecode.assembly.syntax import Key, Line, key
 from interp.bytecode.instruction_set.table import shape
-from interp.bytecode.program import Instruction, Mode, Parameter, Slot
+from interp.bytecode.program import Instruction, Mode, Slot
 from interp.values.faults import FAULTS
 from support.lazy_dataclass import dataclass
 
@@ -79,7 +79,7 @@ class Operands:
         slot = self._frame.get(key(label))
         if slot is None:
             raise line.error(f"there is no parameter or local {label[0]}")
-        if isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN:
+        if slot.variable.mode is not Mode.IN:
             return slot.offset
         return slot.offset + part_offset(line, self._symbols.types[slot.variable.type])
 

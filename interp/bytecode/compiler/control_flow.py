@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 
-from grammar.semantics.types import CHAR, INT, REAL, Enumeration, Type
+from grammar.semantics.types import CHAR, INT, Enumeration, Type
 from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain
@@ -132,20 +133,8 @@ class ControlFlow(CodeMaker):
 
     def _case(self, kept: FrameCells, node: ast.Expression, label: Label) -> None:
         """Generate a jump to the label if the selector is equal to a value."""
-        self._memory.load(kept)
-        between = self._writer.here
-        wanted = kept.type if isinstance(kept.type, Enumeration) else INT
-        right = self._expressions.operand(node, wanted)
-        selection = self._expressions.selected("==", kept.type, right.type)
-        for step in selection.conversions[0]:
-            self._writer.insert(between, Op[step.name.upper()])
-        for step in selection.conversions[1]:
-            self._emit(Op[step.name.upper()])
-        assert selection.primitive is not None, "relations do something"
-        if selection.primitive.operands[0] == "ENUM" and kept.type != right.type:
-            self._expressions.unlike(selection.primitive)
-        else:
-            self._emit(Op[selection.primitive.name.upper()])
+        selector = self._memory.load(kept)
+        self._expressions.joined("==", selector, partial(self._expressions.operand, node))
         self._emit(Op.JUMP_IF, label)
 
     # ----------------------------------------------------------------------- loops
@@ -263,17 +252,7 @@ class ControlFlow(CodeMaker):
         self, counter: Location, last: FrameCells, operator: str, go_on: Label, end: Label
     ) -> None:
         """Generate a jump out of the loop if the counter is beyond its last value."""
-        value = self._memory.load(counter)
-        if not isinstance(value, Scalar):
-            raise self._emitter.fail("operand")
-        selection = self._expressions.selected(operator, value.type, INT)
-        for step in selection.conversions[0]:
-            self._emit(Op[step.name.upper()])
-        self._memory.load(last)
-        for step in selection.conversions[1]:
-            self._emit(Op[step.name.upper()])
-        assert selection.primitive is not None, "relations do something"
-        self._emit(Op[selection.primitive.name.upper()])
+        self._expressions.joined(operator, self._memory.load(counter), self._loaded(last))
         self._emit(Op.JUMP_IF, end)
         self._emit(Op.JUMP, go_on)
 
@@ -281,16 +260,18 @@ class ControlFlow(CodeMaker):
         """Generate the addition of the step to the counter."""
         ready = self._memory.ready(counter)
         behind = self._writer.here
-        value = self._memory.load(counter)
-        assert isinstance(value, Scalar), "compared before"
-        if value.type not in (INT, REAL):
-            raise self._emitter.fail("operand")
-        self._memory.load(step)
-        if value.type == REAL:
-            self._emit(Op.INT_TO_REAL)
-        self._emit(Op.ADD_INT if value.type == INT else Op.ADD_REAL)
+        value = self._expressions.joined("+", self._memory.load(counter), self._loaded(step))
         self._memory.store(ready, value, behind)
         self._memory.tell(ready)
+
+    def _loaded(self, cell: FrameCells) -> Callable[[Type], Scalar]:
+        """Return what pushes the value of a cell."""
+
+        def push(_wanted: Type) -> Scalar:
+            self._memory.load(cell)
+            return Scalar(cell.type)
+
+        return push
 
     # ----------------------------------------------------------------------- jumps
 

@@ -8,6 +8,7 @@ the program ends when it is reached, and the place is reported as a `Refusal`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 from grammar.semantics.types import (
@@ -183,21 +184,29 @@ class Expressions:
         first = self._writer.here
         value: Value = self.operand(chain[0].left, UNKNOWN)
         for each in chain:
-            value = self._joined(each, self._as_operand(value), first)
+            value = self.joined(each.operator, value, partial(self.operand, each.right), first)
         return value
 
-    def _joined(self, node: ast.Binary, left: Scalar | Reference, first: int) -> Value:
-        """Generate an operation with its left operand on the stack."""
-        between = self._writer.here
-        wanted = left.type if isinstance(left.type, Enumeration) else UNKNOWN
-        right = self.operand(node.right, wanted)
-        selection = self.selected(node.operator, left.type, right.type)
+    def joined(
+        self,
+        operator: str,
+        value: Value,
+        push_right: Callable[[Type], Scalar | Reference],
+        first: int = 0,
+    ) -> Value:
+        """Generate an operation whose left operand is on the stack, from ``first`` on.
+
+        ``push_right`` pushes the right one, for a place of a type.
+        """
+        left, between = self._as_operand(value), self._writer.here
+        right = push_right(left.type if isinstance(left.type, Enumeration) else UNKNOWN)
+        selection = self._selected(operator, left.type, right.type)
         primitive = selection.primitive
         assert primitive is not None, "an operator of two operands does something"
         if primitive.name == "compose":
             return self._composed(left, right, first)
         if primitive.operands[0] == "ENUM" and left.type != right.type:
-            return self.unlike(primitive)
+            return self._unlike(primitive)
         for step in reversed(selection.conversions[0]):
             self._writer.insert(between, Op[step.name.upper()])
         for step in selection.conversions[1]:
@@ -205,7 +214,7 @@ class Expressions:
         self._apply(primitive)
         return self._result(selection, left)
 
-    def selected(self, operator: str, left: Type, right: Type) -> Selection:
+    def _selected(self, operator: str, left: Type, right: Type) -> Selection:
         """Return the variant of an operator for these operand types."""
         kinds = kind_of(left), kind_of(right)
         selection = None
@@ -215,7 +224,7 @@ class Expressions:
             raise self._emitter.fail("operand")
         return selection
 
-    def unlike(self, primitive: Primitive) -> Value:
+    def _unlike(self, primitive: Primitive) -> Value:
         """Generate the comparison of constants of two enumerations, which are never equal."""
         self._emit(Op.DROP)
         self._emit(Op.DROP)

@@ -125,21 +125,24 @@ class Memory:
         self.refer(kept)
         return Reference(type_)
 
-    def pushed_path(self, place: SystemVariable) -> Items:
-        """Push the indices of a system variable; return its path as a part of a request."""
+    def pushed_path(self, place: SystemVariable, at: int | None = None) -> Items:
+        """Push the indices of a system variable; return its path as a part of a request.
+
+        They come below what was pushed from ``at`` on, if that is given.
+        """
+        at = self._writer.here if at is None else at
         parts: list[Argument] = []
         for step in place.path:
             if isinstance(step, IndexCell):
-                self._push_hole(step)
+                load = Op.LOAD_REF if step.is_formal else Op.LOAD_LOCAL
+                self._writer.insert(at, load, step.offset)
+                if step.is_formal:
+                    self._writer.insert(at + 1, Op.LOAD)
+                at += 1 + step.is_formal
                 parts.append(Input(Mode.IN, self._emitter.number(INT)))
             else:
                 parts.append(Constant(step))
         return Items(tuple(parts))
-
-    def _push_hole(self, hole: IndexCell) -> None:
-        self._emit(Op.LOAD_REF if hole.is_formal else Op.LOAD_LOCAL, hole.offset)
-        if hole.is_formal:
-            self._emit(Op.LOAD)
 
     # ----------------------------------------------------------------------- parts
 
@@ -269,26 +272,10 @@ class Memory:
 
     def _write(self, place: SystemVariable, value: Value, behind: int) -> None:
         """Generate a write request for a system variable; indices come below the value."""
-        path = self._path_below(place, behind)
-        part = self.remote_value(place.type, value, behind + _pushed_by(place))
+        before = self._writer.here
+        path = self.pushed_path(place, behind)
+        part = self.remote_value(place.type, value, behind + self._writer.here - before)
         self._emitter.ask("Write", path, part)
-
-    def _path_below(self, place: SystemVariable, behind: int) -> Items:
-        """Push the indices of a path below the value; return the path as a part of a request."""
-        parts: list[Argument] = []
-        for step in place.path:
-            if isinstance(step, IndexCell):
-                parts.append(Input(Mode.IN, self._emitter.number(INT)))
-                self._writer.insert(
-                    behind, Op.LOAD_REF if step.is_formal else Op.LOAD_LOCAL, step.offset
-                )
-                behind += 1
-                if step.is_formal:
-                    self._writer.insert(behind, Op.LOAD)
-                    behind += 1
-            else:
-                parts.append(Constant(step))
-        return Items(tuple(parts))
 
     def remote_value(self, type_: Type, value: Value, behind: int) -> Argument:
         """Return the value on top as a part of a request, converted if the type is known."""
@@ -336,9 +323,3 @@ class Memory:
 
 
 _ELEMENTS = {Op.INDEX_LOCAL: Op.ELEMENT_LOCAL, Op.INDEX_DATA: Op.ELEMENT_DATA}
-
-
-def _pushed_by(place: SystemVariable) -> int:
-    """Return the number of instructions that push the indices of a path."""
-    holes = [step for step in place.path if isinstance(step, IndexCell)]
-    return sum(2 if hole.is_formal else 1 for hole in holes)

@@ -6,15 +6,10 @@ references to system variables; a copy is passed instead and written back.
 
 from __future__ import annotations
 
-from pathlib import PurePosixPath
-
 from grammar.semantics.assignability import assignable
 from grammar.semantics.predefined import PredefinedParameter, System
-from grammar.semantics.scopes import Found
-from grammar.semantics.symbols import Kind
 from grammar.semantics.types import CHAR, REAL, UNKNOWN, Type
 from grammar.syntax import ast
-from grammar.syntax.references import Space
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain
 from interp.bytecode.compiler.expressions import CodeMaker
@@ -47,7 +42,6 @@ from interp.bytecode.verifier.signatures import call_mismatch
 from interp.program.reads import is_variable
 from interp.program.variables import untyped_result
 from interp.values.builtins import BUILTINS, FUNCTIONS, WORLD, reads_text
-from interp.values.faults import LinkError
 from interp.values.values import letters
 
 #: Functions that take the name of a variable as a text [TYP-18].
@@ -119,7 +113,7 @@ class PredefinedCalls(CodeMaker):
         if is_out and is_variable(self._context.unit, argument):
             return self._changed(self._designators.place(argument))
         if name in BY_TEXT and isinstance(argument, ast.StringLiteral):
-            return self._memory.handed(Text(letters(self._name_to_find(argument.text))))
+            return self._memory.handed(Text(letters(argument.text)))
         value = self._given(argument, type_, is_builtin=is_builtin)
         if (
             name in FUNCTIONS
@@ -130,28 +124,6 @@ class PredefinedCalls(CodeMaker):
             self._memory.convert(value, REAL)
             value = Scalar(REAL)
         return self._memory.handed(value)
-
-    def _name_to_find(self, text: str) -> str:
-        """Return the name under which the machine, which has no IMPORT, finds a variable [ADV-05].
-
-        If that name denotes something else here, return the text as it is; it will not be found.
-        """
-        root = text.partition("[")[0].partition(".")[0].strip()
-        answer = self._context.scope.find(Space.VALUE, root.upper())
-        if not isinstance(answer, Found) or answer.symbol.kind is not Kind.IMPORT:
-            return text
-        try:
-            meant = self._context.program.declaration(answer).symbol
-        except LinkError:
-            return text
-        places, data = list(self._context.tables.places), self._context.tables.data
-        if meant not in places or any(one.key == meant.key for one in self._context.variables):
-            return text
-        same = [number for number, one in enumerate(data) if one.name.upper() == meant.key]
-        module = PurePosixPath(self._context.unit.module.path).stem.upper()
-        own = [number for number in same if data[number].module.upper() == module]
-        seen = own or [number for number in same if data[number].is_global]
-        return text.replace(root, meant.name, 1) if seen[:1] == [places.index(meant)] else text
 
     def _given(self, argument: ast.Expression, type_: Type, *, is_builtin: bool) -> Value:
         """Generate an :IN argument; for texts see `interp.values.builtins.reads_text`."""

@@ -33,7 +33,6 @@ item for an entry of `_ITEMS`.
 from __future__ import annotations
 
 import re
-from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
@@ -58,6 +57,7 @@ from interp.bytecode.program import (
     Record,
     Slot,
     inputs_of,
+    slot_at,
 )
 from interp.bytecode.verifier.signatures import may_be_missing
 from interp.bytecode.verifier.stack_types import (
@@ -87,7 +87,6 @@ class StackEffects:
         self._code = code
         self._types = program.types
         self._slots = program.slots(code)
-        self._starts = [slot.offset for slot in self._slots]
         self._numbers = {type_: number for number, type_ in enumerate(program.types)}
         self.empty = self._stack = Stack()
         #: What ``t``, ``ENUM`` or ``@t`` has found, where it stands again in the effect.
@@ -141,7 +140,7 @@ class StackEffects:
     def variable(self, place: int) -> tuple[Type, int]:
         """Return the type of the variable of a cell of the frame, and the cell's offset in it."""
         slot = self._slot(place)
-        if isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN:
+        if slot.variable.mode is not Mode.IN:
             raise Refused("the cell holds a reference")
         return self._types[slot.variable.type], place - slot.offset
 
@@ -173,10 +172,10 @@ class StackEffects:
 
     def _slot(self, place: int) -> Slot:
         """Return the parameter or local variable to which a cell of the frame belongs."""
-        number = bisect_right(self._starts, place) - 1
-        if number < 0 or place >= self._slots[number].offset + self._slots[number].cells:
+        slot = slot_at(self._slots, place)
+        if slot is None:
             raise Refused("the frame has no such cell")
-        return self._slots[number]
+        return slot
 
     def _cell_of(self, item: StackItem) -> StackItem:
         """Return the value in the cell that a reference refers to."""
@@ -386,11 +385,7 @@ class StackEffects:
         """Check that the trace can name the :OUT parameter through which something was assigned."""
         self.check_rank(dimensions, 0)
         slot = self._slot(place)
-        if (
-            slot.offset != place
-            or not isinstance(slot.variable, Parameter)
-            or slot.variable.mode is Mode.IN
-        ):
+        if slot.offset != place or slot.variable.mode is Mode.IN:
             raise Refused("no parameter :OUT begins at this cell")
 
     def check_told_rank(self, dimensions: int) -> None:

@@ -38,6 +38,7 @@ from interp.bytecode.program import (
     Program,
     Record,
     printable,
+    slot_at,
 )
 from interp.bytecode.verifier.signatures import call_mismatch, request_mismatch
 from interp.values.faults import LinkError
@@ -245,18 +246,16 @@ class _Tables:
                 raise VerificationError(f"{code.name}: the owner has no {parameter.name} there")
 
     def _can_capture(self, owner: Code, wanted: Parameter, place: int) -> bool:
-        for slot in self._program.slots(owner):
-            if not slot.offset <= place < slot.offset + slot.cells:
-                continue
-            found = slot.variable
-            if isinstance(found, Parameter) and found.mode is not Mode.IN:
-                return place == slot.offset and (found.mode, found.type, found.dimensions) == (
-                    *(wanted.mode, wanted.type, wanted.dimensions),
-                )
-            types = self._program.types
-            path = path_to(types[found.type], place - slot.offset, types[wanted.type])
-            return wanted.mode is Mode.REF and path is not None
-        return False
+        slot = slot_at(self._program.slots(owner), place)
+        if slot is None:
+            return False
+        found, types = slot.variable, self._program.types
+        if found.mode is not Mode.IN:
+            return place == slot.offset and (found.mode, found.type, found.dimensions) == (
+                *(wanted.mode, wanted.type, wanted.dimensions),
+            )
+        path = path_to(types[found.type], place - slot.offset, types[wanted.type])
+        return wanted.mode is Mode.REF and path is not None
 
     def _operands(self, code: Code) -> None:
         ranges = self._ranges(code)

@@ -9,7 +9,7 @@ from typing import Any
 from grammar.semantics.types import Array
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import array_sizes, size
-from interp.bytecode.program import Parameter
+from interp.bytecode.program import slot_at
 from interp.bytecode.vm.context import DATA_LISTS, Frame, Rule, Rules, Site
 from interp.bytecode.vm.data_movement import load
 from interp.bytecode.vm.state import Operation
@@ -239,10 +239,9 @@ class ArrayRules(Rules):
 
     def _view_at(self, site: Site, place: int) -> tuple[int, int]:
         """Return the number of dimensions of an array parameter and the width of its elements."""
-        for slot in self._program.slots(self._program.codes[site.code]):
-            if slot.offset == place and isinstance(slot.variable, Parameter):
-                return slot.variable.dimensions, size(self._types[slot.variable.type])
-        raise AssertionError("verified")
+        slot = slot_at(self._program.slots(self._program.codes[site.code]), place)
+        assert slot is not None, "verified"
+        return slot.variable.dimensions, size(self._types[slot.variable.type])
 
 
 def _view(cells: list[Any], first: int, dimensions: int) -> list[Any]:

@@ -11,7 +11,7 @@ from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain, size
 from interp.bytecode.program import CodeKind, Mode, Parameter, stack_cells
 from interp.bytecode.vm.context import DATA_LISTS, Frame, Rule, Rules, Site
-from interp.bytecode.vm.state import Operation
+from interp.bytecode.vm.state import Operation, raising
 from interp.values.faults import FAULTS, LinkError, fault
 
 
@@ -20,7 +20,7 @@ class ControlRules(Rules):
 
     def rules(self) -> Mapping[Op, Rule]:
         """Return the factory of each opcode."""
-        hooks = self._runtime.hooks
+        hooks, texts = self._runtime.hooks, self._program.texts
         return {
             Op.LINE: lambda site, _line, _to: hooks.line(site.place, site.after),
             Op.PROCEED: lambda site: hooks.proceed(site.after),
@@ -33,8 +33,8 @@ class ControlRules(Rules):
             Op.CALL: self._call,
             Op.RETURN: self._return,
             Op.RETURN_VALUE: self._return,
-            Op.FAIL: _fail,
-            Op.UNLINKED: self._unlinked,
+            Op.FAIL: lambda _site, code: raising(lambda: fault(_SLUGS[code])),
+            Op.UNLINKED: lambda _site, number: raising(lambda: LinkError(texts[number])),
             Op.AT: lambda site, _line, _to: hooks.other_line(site.place, site.after),
             Op.FOR_LOCAL: partial(self._for, self._state),
             Op.FOR_DATA: partial(self._for, DATA_LISTS),
@@ -139,14 +139,6 @@ class ControlRules(Rules):
 
         return operation
 
-    def _unlinked(self, _here: Site, number: int) -> Operation:
-        text = self._program.texts[number]
-
-        def operation() -> Operation:
-            raise LinkError(text)
-
-        return operation
-
     def _for(
         self, frame: Frame, site: Site, counter: int, limit: int, step: int, target: int
     ) -> Operation:
@@ -176,12 +168,3 @@ def _jump(site: Site, target: int) -> Operation:
     if target > site.place:  # made ready already
         return body[target]
     return lambda: body[target]
-
-
-def _fail(_here: Site, code: int) -> Operation:
-    slug = _SLUGS[code]
-
-    def operation() -> Operation:
-        raise fault(slug)
-
-    return operation

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from interp.bytecode.program import CodeKind, Mode, Parameter, Program, stack_cells
+from interp.bytecode.program import CodeKind, Mode, Program, slot_at, stack_cells
 from interp.bytecode.vm.state import Operation, State
 from interp.port.requests import CodeHandle
 from interp.values.faults import fault
@@ -68,21 +68,15 @@ class Frames:
         owner = self.first_cell(serial) if code.captures else None
         if owner is None:
             return []
+        assert code.owner is not None, "only what has an owner captures"
+        slots = self._program.slots(self._program.codes[code.owner])
         found: list[Any] = []
         for parameter, place in zip(code.parameters, code.captures, strict=True):
-            found += self._captured(number, parameter, owner, place)
+            first, slot = owner + place, slot_at(slots, place)
+            is_reference = slot is not None and slot.variable.mode is not Mode.IN
+            cells = self._state.cells[first : first + stack_cells(parameter)]
+            found += cells if is_reference else [first]
         return found
-
-    def _captured(self, number: int, parameter: Parameter, owner: int, place: int) -> list[Any]:
-        """Return the reference or view to a variable in the owner's frame, for a parameter."""
-        code = self._program.codes[number]
-        assert code.owner is not None, "only what has an owner captures"
-        for slot in self._program.slots(self._program.codes[code.owner]):
-            found = slot.variable
-            is_there = slot.offset == place and isinstance(found, Parameter)
-            if is_there and isinstance(found, Parameter) and found.mode is not Mode.IN:
-                return self._state.cells[owner + place : owner + place + stack_cells(parameter)]
-        return [owner + place]
 
     def first_cell(self, serial: int) -> int | None:
         """Return the first cell of the frame with this serial, or ``None`` if it has ended."""

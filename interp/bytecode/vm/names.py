@@ -17,7 +17,7 @@ from interp.bytecode.cell_layout import (
     size,
     value_at,
 )
-from interp.bytecode.program import Local, Mode, Parameter, Program, Slot
+from interp.bytecode.program import Mode, Program, Slot, slot_at
 from interp.bytecode.vm.state import State
 from interp.port.inspection import InspectedValue
 from interp.port.requests import Path, path_of
@@ -73,14 +73,11 @@ class Names:
             variable = program.data[number]
             start, whole = program.addresses[number], program.types[variable.type]
             return self._part(variable.name, whole, start, address, type_, dimensions)
-        for slot in self.slots(state.code):
-            start = state.fp + slot.offset
-            if self._is_reference(slot):
-                continue
-            if start <= address < start + slot.cells:
-                whole = program.types[slot.variable.type]
-                return self._part(slot.variable.name, whole, start, address, type_, dimensions)
-        return None
+        slot = slot_at(self.slots(state.code), address - state.fp)
+        if slot is None or self._is_reference(slot):
+            return None
+        start, whole = state.fp + slot.offset, program.types[slot.variable.type]
+        return self._part(slot.variable.name, whole, start, address, type_, dimensions)
 
     def through(
         self, offset: int, type_: Type, dimensions: int
@@ -90,13 +87,12 @@ class Names:
         ``offset`` is that of the parameter in the frame.
         """
         state = self._state
-        for slot in self.slots(state.code):
-            if slot.offset == offset:
-                whole, start = self.referred(slot)
-                if start is None:
-                    return None
-                return self._part(slot.variable.name, whole, start, state.last, type_, dimensions)
-        return None
+        slot = slot_at(self.slots(state.code), offset)
+        assert slot is not None, "verified"
+        whole, start = self.referred(slot)
+        if start is None:
+            return None
+        return self._part(slot.variable.name, whole, start, state.last, type_, dimensions)
 
     def referred(self, slot: Slot) -> tuple[Type, int | None]:
         """Return the type and the address of a parameter's target; ``None`` if left out."""
@@ -104,7 +100,7 @@ class Names:
         first = state.fp + slot.offset
         variable = slot.variable
         type_ = program.types[variable.type]
-        if isinstance(variable, Local) or variable.mode is Mode.IN:
+        if variable.mode is Mode.IN:
             return type_, first
         start = state.cells[first]
         if variable.mode is Mode.VIEW:
@@ -191,7 +187,7 @@ class Names:
 
     @staticmethod
     def _is_reference(slot: Slot) -> bool:
-        return isinstance(slot.variable, Parameter) and slot.variable.mode is not Mode.IN
+        return slot.variable.mode is not Mode.IN
 
     def _slot(self, name: str) -> Slot | None:
         """Return the parameter or local with this name."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from grammar.semantics.types import REAL
@@ -12,12 +13,12 @@ from interp.bytecode.cell_layout import shown
 from interp.bytecode.program import Argument, Code, Input, Instruction, Mode, Program
 from interp.bytecode.vm.names import Names
 from interp.bytecode.vm.request_marshalling import RequestBuilder
-from interp.bytecode.vm.state import Operation, State, computed
+from interp.bytecode.vm.state import Operation, State, computed, then
 from interp.bytecode.vm.statement_budget import Counter, Pause
 from interp.bytecode.vm.value_marshalling import Block, Change, Entry, arguments_of
 from interp.port import requests
 from interp.port.events import Sink, wanting
-from interp.port.requests import At, MoveEmily, Request, Slice, StopAdvance, Value, Write
+from interp.port.requests import At, MoveEmily, Path, Request, Slice, StopAdvance, Value, Write
 from interp.port.requests import CodeHandle as HandedOver
 from interp.program.load import Guard, Limits
 from interp.values.builtins import FUNCTIONS, WEIGHTS, Surroundings, call
@@ -91,7 +92,8 @@ class Services:
     def line(self, place: int, after: Operation) -> Operation:
         """Return the operation of a `LINE` instruction."""
         state, pause = self._state, self._pause
-        begin = after if self._lines is None else self._traced_line(self._lines, after)
+        lines = self._lines
+        begin = after if lines is None else then(lambda: lines.line(self.at()), after)
 
         def operation() -> Operation | None:
             state.statement = place
@@ -129,22 +131,11 @@ class Services:
 
     def other_line(self, place: int, after: Operation) -> Operation:
         """Return the operation of an `AT` instruction."""
-        state = self._state
-
-        def operation() -> Operation:
-            state.statement = place
-            return after
-
-        return operation
+        return then(partial(setattr, self._state, "statement", place), after)
 
     def proceed(self, after: Operation) -> Operation:
         """Return the operation of a `PROCEED` instruction."""
-
-        def operation() -> Operation:
-            self.counter.guard = Guard.NEXT
-            return after
-
-        return operation
+        return then(partial(setattr, self.counter, "guard", Guard.NEXT), after)
 
     # ----------------------------------------------------------------------- requests
 
@@ -284,49 +275,28 @@ class Services:
 
     # ----------------------------------------------------------------------- trace
 
-    def _traced_line(self, sink: Sink, after: Operation) -> Operation:
-        def operation() -> Operation:
-            sink.line(self.at())
-            return after
-
-        return operation
-
     def tell(self, instruction: Instruction, after: Operation) -> Operation:
         """Return the operation of a trace instruction; ``after`` if its events are not wanted."""
-        if instruction.op is Op.TELL_BRANCH:
-            branches = self._branches
-            return after if branches is None else self._traced_branch(branches, instruction, after)
-        assignments = self._assignments
-        return after if assignments is None else self._traced(assignments, instruction, after)
+        branches = self._branches
+        if instruction.op is not Op.TELL_BRANCH:
+            is_wanted = self._assignments is not None
+            return then(partial(self._tell_assigned, instruction), after) if is_wanted else after
+        (way,) = instruction.operands
+        return after if branches is None else then(lambda: branches.branch(self.at(), way), after)
 
-    def _traced_branch(self, sink: Sink, instruction: Instruction, after: Operation) -> Operation:
-        way = instruction.operands[0]
-
-        def operation() -> Operation:
-            sink.branch(self.at(), way)
-            return after
-
-        return operation
-
-    def _traced(self, sink: Sink, instruction: Instruction, after: Operation) -> Operation:
-        state, names = self._state, self._names
-        op, operands, types = instruction.op, instruction.operands, self._program.types
-
-        def operation() -> Operation:
-            match op:
-                case Op.TELL_LOCAL:
-                    found = names.assigned(state.fp + operands[0], types[operands[1]])
-                case Op.TELL_DATA:
-                    found = names.assigned(operands[0], types[operands[1]])
-                case Op.TELL_REF:
-                    found = names.through(operands[0], types[operands[1]], operands[2])
-                case _:
-                    found = names.assigned(state.last, types[operands[0]], operands[1])
-            if found is not None:
-                sink.assign(self.at(), *found)
-            return after
-
-        return operation
+    def _tell_assigned(self, instruction: Instruction) -> None:
+        """Trace the assignment that a trace instruction stands for."""
+        state, operands, types = self._state, instruction.operands, self._program.types
+        match instruction.op:
+            case Op.TELL_LOCAL:
+                found = self._names.assigned(state.fp + operands[0], types[operands[1]])
+            case Op.TELL_DATA:
+                found = self._names.assigned(operands[0], types[operands[1]])
+            case Op.TELL_REF:
+                found = self._names.through(operands[0], types[operands[1]], operands[2])
+            case _:
+                found = self._names.assigned(state.last, types[operands[0]], operands[1])
+        self._tell(found)
 
     def _tell_changed(self, change: Change) -> None:
         """Trace that a function has changed an argument."""
@@ -338,7 +308,10 @@ class Services:
             found = self._names.assigned(self._state.last, type_, given.dimensions)
         else:
             found = self._names.through(through, type_, given.dimensions)
-        if found is not None:
+        self._tell(found)
+
+    def _tell(self, found: tuple[Path, Value | None] | None) -> None:
+        if found is not None and self._assignments is not None:
             self._assignments.assign(self.at(), *found)
 
     def tell_call(self, code: int) -> None:

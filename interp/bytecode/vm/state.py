@@ -119,3 +119,22 @@ def computed(
         return after
 
     return of_two
+
+
+def then(act: Callable[[], object], after: Operation) -> Operation:
+    """Return an operation that does something and continues with ``after``."""
+
+    def operation() -> Operation:
+        act()
+        return after
+
+    return operation
+
+
+def raising(make: Callable[[], Exception]) -> Operation:
+    """Return an operation that raises an error."""
+
+    def operation() -> Operation:
+        raise make()
+
+    return operation
