@@ -20,6 +20,7 @@ from typing import ClassVar
 from grammar.semantics.types import SCALARS, Type
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Raw, kind_at, raw_of_word, size
+from interp.bytecode.instruction_set.table import instructions, shape
 from support.lazy_dataclass import dataclass
 
 #: The types that every program begins with.
@@ -325,3 +326,24 @@ def slot_at(slots: Sequence[Slot], place: int) -> Slot | None:
     """Return the parameter or local to which a cell of a frame belongs, or ``None``."""
     found = slots[bisect_right(slots, place, key=attrgetter("offset")) - 1] if slots else None
     return found if found and 0 <= place - found.offset < found.cells else None
+
+
+# ----------------------------------------------------------------------------- control flow
+
+#: Instructions without a next instruction.
+ENDS = frozenset(Op(one.number) for one in instructions() if "ends" in one.flags)
+
+
+def targets(instruction: Instruction) -> Iterator[int]:
+    """Yield the jump targets of an instruction."""
+    kinds = shape(instruction.op.name).operands
+    for kind, operand in zip(kinds, instruction.operands, strict=True):
+        if kind == "target":
+            yield operand
+
+
+def successors(place: int, instruction: Instruction) -> Iterator[int]:
+    """Yield the instructions that can come after the one at this place."""
+    yield from targets(instruction)
+    if instruction.op not in ENDS:
+        yield place + 1

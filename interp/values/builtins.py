@@ -19,13 +19,11 @@ from typing import Any
 from grammar.semantics.predefined import PredefinedFunction, System
 from grammar.semantics.types import (
     AXES,
-    BOOL,
     CARTESIAN,
     CHAR,
-    INT,
-    REAL,
     Array,
     Enumeration,
+    Scalar,
     Structure,
     Type,
 )
@@ -153,9 +151,6 @@ def _varstate(surroundings: Surroundings, name: Value) -> Outcome:
     return word("VAR_STATE", "INITIALIZED" if has_value(found[1]) else "DECLARED"), {}
 
 
-_SCALARS: Mapping[Type, str] = {INT: "INT", REAL: "REAL", BOOL: "BOOL", CHAR: "CHAR"}
-
-
 def _vartype(surroundings: Surroundings, name: Value) -> Outcome:
     """Return the type of a variable; for an array that of its elements (unconfirmed) [TYP-18]."""
     found = surroundings.find(text_of(name))
@@ -167,10 +162,10 @@ def _vartype(surroundings: Surroundings, name: Value) -> Outcome:
             kind = "ENUM"
         case Structure():
             kind = type_.name.upper() if type_.name.upper() in CARTESIAN | AXES else "STRUC"
-        case None:
-            kind = "UNKNOWN"
+        case Scalar(name=kind):
+            pass
         case _:
-            kind = _SCALARS.get(type_, "UNKNOWN")
+            kind = "UNKNOWN"
     return word("VAR_TYPE", f"TYP_{kind}"), {}
 
 

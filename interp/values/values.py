@@ -260,8 +260,6 @@ def zero(type_: Type) -> Value:
     match type_:
         case Structure():
             return StructureValue(type_, [zero(member.type) for member in type_.members])
-        case Array(element=Scalar() | Enumeration() as element):
-            return ArrayValue(type_, [zero(element)] * math.prod(_sizes(type_)))
         case Array():
             return ArrayValue(type_, [zero(type_.element) for _ in range(math.prod(_sizes(type_)))])
         case Enumeration() if type_.constants:

@@ -60,7 +60,7 @@ def compile_file(
 
 def _native_code(image: bytes) -> Iterator[str]:
     """Compile and store the native code; yield the reason if that fails."""
-    from interp.bytecode.image.reader import read_image
+    from interp.bytecode.image.image import read_image
     from interp.bytecode.verifier.verify import verify
     from interp.native import AVAILABLE
 
@@ -108,7 +108,7 @@ def disassemble_image(
     """
     from interp.bytecode.assembly.disassembler import disassemble
     from interp.bytecode.image.codec import ImageError
-    from interp.bytecode.image.reader import read_image
+    from interp.bytecode.image.image import read_image
     from interp.bytecode.verifier.verify import VerificationError, verify
     from interp.native import AVAILABLE
 

@@ -60,7 +60,7 @@ class Foundry:
         """Some of our programs as images and as text of the bytecode machine."""
         from interp.bytecode.assembly.disassembler import disassemble
         from interp.bytecode.compiler.project import compile_program
-        from interp.bytecode.image.writer import write_image
+        from interp.bytecode.image.image import write_image
         from interp.values.faults import LinkError
         from krl.running.program_loading import load_program
 

@@ -25,8 +25,7 @@ from grammar.parser.failures import FailureFinder
 from grammar.parser.network import network_of
 from grammar.parser.recognizer import Recognizer
 from grammar.syntax.source import Source
-from interp.bytecode.image.reader import read_image
-from interp.bytecode.image.writer import write_image
+from interp.bytecode.image.image import read_image, write_image
 from interp.bytecode.instruction_set.table import MAGIC
 from krl.baseline_file import read_baseline
 from krl.commands.lsp import Bounded

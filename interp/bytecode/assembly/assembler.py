@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 from grammar.semantics.types import Enumeration, Member, Structure, Type
 from interp.bytecode.assembly.operands import Operands
@@ -43,6 +44,7 @@ from interp.values.faults import LinkError
 
 __all__ = ["AssemblyError", "assemble"]
 
+_T = TypeVar("_T")
 _MODES = {mode.value: mode for mode in Mode}
 #: The words among the parts of a request that are constants.
 _WORDS = {"nil": Constant(None), "TRUE": Constant(True), "FALSE": Constant(False)}
@@ -75,13 +77,16 @@ class _Assembler:
 
     def program(self) -> Program:
         """Return the program."""
-        sections: Mapping[str, Callable[[Line], None]] = {
+        symbols = self._symbols
+        sections: Mapping[str, Callable[[Line], object]] = {
             "struct": self._structure,
             "enum": self._enumeration,
-            "array": self._array,
-            "text": self._text,
-            "ask": self._ask,
-            "builtin": self._builtin,
+            "array": lambda line: symbols.number_of(symbols.type_named(line)),
+            "text": self._labelled("text", self._texts, Line.string),
+            "ask": self._labelled("ask", self._asks, lambda line: Ask(*self._entry(line))),
+            "builtin": self._labelled(
+                "builtin", self._builtins, lambda line: Builtin(line.name(), *self._entry(line))
+            ),
             "data": lambda line: self._variable(line, is_global=False),
             "global": lambda line: self._variable(line, is_global=True),
             "import": self._import,
@@ -150,28 +155,25 @@ class _Assembler:
             constants.append(line.name())
         self._symbols.add_type(line, Enumeration(own, tuple(constants)))
 
-    def _array(self, line: Line) -> None:
-        self._symbols.number_of(self._symbols.type_named(line))
-
     # --------------------------------------------------------------------------- requests
 
-    def _text(self, line: Line) -> None:
-        self._symbols.add_label(line, "text", len(self._texts))
-        self._texts.append(line.string())
+    def _labelled(
+        self, section: str, found: list[_T], read: Callable[[Line], _T]
+    ) -> Callable[[Line], None]:
+        """Return what reads an entry that has a label, and adds it to those found so far."""
 
-    def _ask(self, line: Line) -> None:
-        self._symbols.add_label(line, "ask", len(self._asks))
-        self._asks.append(Ask(line.name(), *self._entry(line)))
+        def add(line: Line) -> None:
+            self._symbols.add_label(line, section, len(found))
+            found.append(read(line))
 
-    def _builtin(self, line: Line) -> None:
-        self._symbols.add_label(line, "builtin", len(self._builtins))
-        self._builtins.append(Builtin(line.name(), *self._entry(line)))
+        return add
 
-    def _entry(self, line: Line) -> tuple[tuple[Argument, ...], int | None]:
-        parts = []
+    def _entry(self, line: Line) -> tuple[str, tuple[Argument, ...], int | None]:
+        name, parts = line.name(), []
         while not line.is_done and not line.has("arrow"):
             parts.append(self._part(line))
-        return tuple(parts), self._symbols.type_number(line) if line.found("->") else None
+        result = self._symbols.type_number(line) if line.found("->") else None
+        return name, tuple(parts), result
 
     def _part(self, line: Line, depth: int = 0) -> Argument:
         if depth > 8:

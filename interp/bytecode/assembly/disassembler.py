@@ -37,9 +37,9 @@ from interp.bytecode.program import (
     Program,
     Record,
     slot_at,
+    targets,
     variables,
 )
-from interp.bytecode.verifier.successors import targets
 from interp.values.faults import FAULTS
 
 _FAULTS = {kind.code: slug for slug, kind in FAULTS.items()}

@@ -14,6 +14,7 @@ from interp.bytecode.compiler.buffer_sizes import Bound, Sizes
 from interp.bytecode.compiler.tables import Tables
 from interp.bytecode.instruction_set.table import MAX_CELLS, shape
 from interp.bytecode.program import (
+    ENDS,
     Code,
     CodeKind,
     Instruction,
@@ -22,7 +23,6 @@ from interp.bytecode.program import (
     Parameter,
     stack_cells,
 )
-from interp.bytecode.verifier.successors import ENDS
 from support.lazy_dataclass import dataclass
 
 

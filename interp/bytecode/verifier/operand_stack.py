@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from interp.bytecode.program import Code, Program
+from interp.bytecode.program import ENDS, Code, Program, targets
 from interp.bytecode.verifier.stack_effects import StackEffects
 from interp.bytecode.verifier.stack_types import Refused, Stack
-from interp.bytecode.verifier.successors import ENDS, targets
 from interp.bytecode.verifier.wellformed import error_at
 
 

@@ -31,12 +31,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.image.writer import write_image
+from interp.bytecode.image.image import write_image
 from interp.bytecode.instruction_set.table import instructions
-from interp.bytecode.program import Code, CodeKind, Program
+from interp.bytecode.program import Code, CodeKind, Program, successors, targets
 from interp.bytecode.verifier.operand_stack import Flow
 from interp.bytecode.verifier.stack_types import Stack
-from interp.bytecode.verifier.successors import successors, targets
 from interp.bytecode.verifier.wellformed import VerificationError, check_form, error_at
 
 __all__ = ["VerificationError", "Verified", "measured", "stacks_needed", "verify"]

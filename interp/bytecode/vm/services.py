@@ -11,11 +11,16 @@ from grammar.semantics.types import REAL
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import shown
 from interp.bytecode.program import Argument, Code, Input, Instruction, Mode, Program
+from interp.bytecode.vm.marshalling import (
+    Block,
+    Change,
+    Entry,
+    RequestBuilder,
+    arguments_of,
+)
 from interp.bytecode.vm.names import Names
-from interp.bytecode.vm.request_marshalling import RequestBuilder
 from interp.bytecode.vm.state import Operation, State, computed, then
 from interp.bytecode.vm.statement_budget import Counter, Pause
-from interp.bytecode.vm.value_marshalling import Block, Change, Entry, arguments_of
 from interp.port import requests
 from interp.port.events import Sink, wanting
 from interp.port.requests import At, MoveEmily, Path, Request, Slice, StopAdvance, Value, Write

@@ -9,7 +9,7 @@ from typing import Any
 
 from grammar.semantics.predefined import System
 from interp.bytecode.image.codec import ImageError
-from interp.bytecode.image.reader import read_image
+from interp.bytecode.image.image import read_image
 from interp.bytecode.instruction_set.table import FORMAT, MAGIC
 from interp.bytecode.program import CodeKind, Program
 from interp.bytecode.verifier.verify import VerificationError, verify

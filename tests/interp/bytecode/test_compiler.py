@@ -20,8 +20,7 @@ from grammar.syntax.walk import walk
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.assembly.disassembler import disassemble
 from interp.bytecode.compiler.project import Compiled, compile_program
-from interp.bytecode.image.reader import read_image
-from interp.bytecode.image.writer import write_image
+from interp.bytecode.image.image import read_image, write_image
 from interp.bytecode.verifier.verify import verify
 from interp.bytecode.vm.executor import Machine
 from interp.executors import Prepared

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.assembly.disassembler import disassemble
-from interp.bytecode.image.writer import write_image
+from interp.bytecode.image.image import write_image
 from interp.bytecode.instruction_set.table import instructions
 from tests.interp.bytecode.damaged_images import run_on_machines, sealed
 

@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.image.codec import ImageError
-from interp.bytecode.image.reader import read_image
-from interp.bytecode.image.writer import write_image
+from interp.bytecode.image.image import read_image, write_image
 from interp.bytecode.instruction_set.table import FORMAT
 
 SMALL = 'bytecode 4\nstruct S A:INT\ndata M.X S = 1\ncode M routine "m" 1\nbegin\n  RETURN\nend\n'

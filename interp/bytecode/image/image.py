@@ -1,7 +1,8 @@
-"""Reads an image into a program; `interp.bytecode.image.layout` describes the format.
+"""Images as bytes: a header, a table of sections, and the sections.
 
-Images are not trusted: `read_image` raises `ImageError` for any bytes that are not of this format.
-`interp.bytecode.verifier.verify` then checks the program.
+`interp.bytecode.image.layout` describes the format. Images are not trusted: `read_image` raises
+`ImageError` for any bytes that are not of this format. `interp.bytecode.verifier.verify` then
+checks the program.
 """
 
 from __future__ import annotations
@@ -11,16 +12,42 @@ import zlib
 from typing import Any
 
 from grammar.semantics.types import Type
-from interp.bytecode.image.codec import ImageError, WordReader
+from interp.bytecode.image.codec import ImageError, WordReader, WordWriter
 from interp.bytecode.image.layout import SECTIONS, TABLES
 from interp.bytecode.instruction_set.table import FORMAT, MAGIC
 from interp.bytecode.program import BASIC_TYPES, Program
 
 
+def write_image(program: Program) -> bytes:
+    """Return the image of a verified program."""
+    strings: dict[str, int] = {}
+    types = {type_: number for number, type_ in enumerate(program.types)}
+    tables = (
+        *(program.types[len(BASIC_TYPES) :], program.texts, program.asks, program.builtins),
+        *(program.data, program.initial, program.codes, program.imports),
+    )
+    sections = {}
+    for (name, codec), table in zip(TABLES.items(), tables, strict=True):
+        writer = WordWriter(strings, types)
+        codec.write(writer, table)
+        sections[name] = writer.data()
+    sections = {"STRS": _strings(list(strings)), **sections}
+    names = (name.encode("ascii") + struct.pack("<I", len(data)) for name, data in sections.items())
+    body = struct.pack("<I", len(sections)) + b"".join((*names, *sections.values()))
+    return struct.pack("<4sIII", MAGIC, FORMAT, 16 + len(body), zlib.crc32(body)) + body
+
+
+def _strings(strings: list[str]) -> bytes:
+    parts = [text.encode("utf-8") for text in strings]
+    letters = b"".join(parts)
+    lengths = [len(parts), *map(len, parts)]
+    return struct.pack(f"<{len(lengths)}I", *lengths) + letters + bytes(-len(letters) % 4)
+
+
 def read_image(data: bytes) -> Program:
     """Return the program in an image; raises `ImageError`."""
-    sections = _sections(data)
-    strings = _strings(sections["STRS"])
+    sections = _read_sections(data)
+    strings = _read_strings(sections["STRS"])
     types: list[Type] = list(BASIC_TYPES)
     found: list[Any] = []
     for name, table in TABLES.items():
@@ -31,7 +58,7 @@ def read_image(data: bytes) -> Program:
     return Program(tuple(types), *found[1:])
 
 
-def _sections(data: bytes) -> dict[str, bytes]:
+def _read_sections(data: bytes) -> dict[str, bytes]:
     if data[:4] != MAGIC:
         raise ImageError("not an image: it does not begin with KRLI")
     if len(data) < 20:
@@ -60,7 +87,7 @@ def _sections(data: bytes) -> dict[str, bytes]:
     return sections
 
 
-def _strings(data: bytes) -> list[str]:
+def _read_strings(data: bytes) -> list[str]:
     reader = WordReader("STRS", data, (), [])
     count = reader.word()
     if count > reader.left:
