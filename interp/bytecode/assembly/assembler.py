@@ -85,7 +85,7 @@ class _Assembler:
             "text": self._labelled("text", self._texts, Line.string),
             "ask": self._labelled("ask", self._asks, lambda line: Ask(*self._entry(line))),
             "builtin": self._labelled(
-                "builtin", self._builtins, lambda line: Builtin(line.name(), *self._entry(line))
+                "builtin", self._builtins, lambda line: Builtin(*self._entry(line))
             ),
             "data": lambda line: self._variable(line, is_global=False),
             "global": lambda line: self._variable(line, is_global=True),
