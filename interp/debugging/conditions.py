@@ -7,9 +7,11 @@ program has stopped. Calls are rejected, so that an evaluation has no side effec
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
+from typing import NoReturn
 
-from grammar.semantics.types import Structure, Type
+from grammar.semantics.types import Structure
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.walk import left_chain
@@ -31,10 +33,6 @@ from interp.values.values import (
     position_type,
 )
 
-_Look = Callable[[str], InspectedValue | None]
-#: Returns the first and the last variable that a signal denotes, by the name of the signal.
-_Signal = Callable[[str], tuple[ast.Expression, ast.Expression | None] | None]
-
 
 @cache
 def parsed(text: str) -> ast.Expression:
@@ -52,9 +50,7 @@ def guard_of(text: str) -> Guard | None:
     try:
         match parsed(text):
             case ast.Binary(operator=relation, left=left, right=right) if relation in RELATIONS:
-                name = path_text(
-                    _Evaluation(lambda _text: None, None, lambda _name: None).steps(left)
-                )
+                name = path_text(Evaluation(_refused, _refused, _refused).steps(left))
                 match right:
                     case ast.IntegerLiteral(value=number) if number < 2**31:
                         return Guard(name, relation, number)
@@ -67,6 +63,10 @@ def guard_of(text: str) -> Guard | None:
     return None
 
 
+def _refused(_name: object) -> NoReturn:
+    raise LinkError("no constant")
+
+
 def root_of(node: ast.Expression) -> str | None:
     """Return the variable with which a designator begins, in upper case; else ``None``."""
     while isinstance(node, ast.Subscript | ast.Member | ast.Parenthesised):
@@ -74,37 +74,30 @@ def root_of(node: ast.Expression) -> str | None:
     return node.name.key if isinstance(node, ast.Variable) else None
 
 
-def evaluated(
-    node: ast.Expression,
-    look: _Look,
-    read: Reader | None = None,
-    signal: _Signal = lambda _name: None,
-    wanted: Type | None = None,
-) -> Value:
-    """Return the value of an expression.
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """Evaluates expressions.
 
-    ``look`` finds variables of the program, ``read`` those of the controller, ``signal`` signals by
-    name. ``wanted`` is the type of the context, which an enumeration constant needs. Raises
-    `interp.values.faults.Fault` as the program would, and `LinkError` for unknown names.
+    ``look`` finds variables of the program, ``read`` those of the controller, ``signal`` the first
+    and the last variable that a signal denotes, by its name.
     """
-    return _Evaluation(look, read, signal).value(node, wanted)
 
+    look: Callable[[str], InspectedValue | None]
+    read: Reader
+    signal: Callable[[str], tuple[ast.Expression, ast.Expression | None] | None]
 
-def place_of(node: ast.Expression, look: _Look, read: Reader | None, signal: _Signal) -> str | Path:
-    """Return the target of an assignment: a variable as text, or the path of a system variable."""
-    evaluation = _Evaluation(look, read, signal)
-    steps = evaluation.steps(node)
-    path = evaluation.system_path(steps)
-    return path_text(steps) if path is None else path
-
-
-class _Evaluation:
-    def __init__(self, look: _Look, read: Reader | None, signal: _Signal) -> None:
-        self._look = look
-        self._read = read
-        self._signal = signal
+    def place(self, node: ast.Expression) -> str | Path:
+        """Return the target of an assignment: a variable as text, or a path for the controller."""
+        steps = self.steps(node)
+        path = self.system_path(steps)
+        return path_text(steps) if path is None else path
 
     def value(self, node: ast.Expression, wanted: object = None) -> Value:
+        """Return the value of an expression.
+
+        ``wanted`` is the type of the context, which an enumeration constant needs. Raises
+        `interp.values.faults.Fault` as the program would, and `LinkError` for unknown names.
+        """
         match node:
             case ast.Parenthesised():
                 return self.value(node.inner, wanted)
@@ -152,14 +145,10 @@ class _Evaluation:
         steps = self.steps(node)
         path = self.system_path(steps)
         if path is not None:
-            if self._read is None:
-                raise LinkError(
-                    f"{steps[0]} belongs to the controller, which is not available here"
-                )
-            asked: Value = self._read(path)
+            asked: Value = self.read(path)
             return asked
         text = path_text(steps)
-        seen = self._look(text)
+        seen = self.look(text)
         if seen is None:
             raise LinkError(f"{text} is not known here")
         return known(seen.value)
@@ -168,7 +157,7 @@ class _Evaluation:
         """Return the path of a system variable or of a signal; ``None`` for other variables."""
         if str(steps[0]).startswith("$"):
             return steps
-        stands_for = self._signal(str(steps[0])) if len(steps) == 1 else None
+        stands_for = self.signal(str(steps[0])) if len(steps) == 1 else None
         if stands_for is None:
             return None
         first, last = stands_for

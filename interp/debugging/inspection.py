@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 from grammar.semantics.types import UNKNOWN
 from interp.controller.controller import ArmState, Controller
 from interp.controller.state.tasks import LevelKind
 from interp.controller.state.trace import TaskName
-from interp.debugging.conditions import evaluated, parsed, place_of
+from interp.debugging.conditions import Evaluation, parsed
 from interp.debugging.executor import DebuggedExecutor
 from interp.debugging.history import Assigned
 from interp.debugging.names import Names, names_in, signal_in
 from interp.port.inspection import InspectedValue, StackFrame
 from interp.port.requests import Value
 from interp.program.load import CheckedProgram
-from interp.values.faults import LinkError
 from interp.values.values import converted
 
 
@@ -30,7 +28,7 @@ class Inspection:
 
     def __init__(self, program: CheckedProgram) -> None:
         self._program = program
-        self._controller: Controller | None = None
+        self._controller: Controller
         self._tasks: dict[TaskName, DebuggedExecutor] = {}
 
     def attach(self, controller: Controller) -> None:
@@ -45,12 +43,12 @@ class Inspection:
     @property
     def arm(self) -> ArmState:
         """The state of the arm."""
-        return ArmState(0, None, 0, 0) if self._controller is None else self._controller.arm
+        return self._controller.arm
 
     def frames(self, task: TaskName = "robot") -> tuple[StackFrame, ...]:
         """Return the call stack of a program, innermost frame first."""
         frames = self._tasks[task].inside.frames()
-        levels = [] if self._controller is None else self._controller.levels(task)
+        levels = self._controller.levels(task)
         return tuple(_named(one, levels) for one in frames)
 
     def height(self, task: TaskName) -> int:
@@ -72,18 +70,18 @@ class Inspection:
 
     def value(self, text: str, task: TaskName = "robot", frame: int = 0) -> Value:
         """Return the value of an expression in a frame."""
-        return evaluated(parsed(text), *self._names_of(task, frame))
+        return self._evaluation(task, frame).value(parsed(text))
 
     def assignment(self, text: str, value: str, task: TaskName, frame: int) -> Assigned:
         """Return the assignment of the value of an expression to a variable, also an input."""
-        names = self._names_of(task, frame)
-        target = place_of(parsed(text), *names)
+        evaluation = self._evaluation(task, frame)
+        target = evaluation.place(parsed(text))
         if isinstance(target, str):
             seen = self.seen(target, task, frame)
             type_ = UNKNOWN if seen is None else seen.type
         else:
-            type_ = UNKNOWN if self._controller is None else self._controller.type_of(target)
-        found = evaluated(parsed(value), *names, type_)
+            type_ = self._controller.type_of(target)
+        found = evaluation.value(parsed(value), type_)
         if type_ != UNKNOWN and not isinstance(target, str):
             found = converted(found, type_)
         return Assigned(task, frame, target, found)
@@ -92,22 +90,17 @@ class Inspection:
         """Assign; raises `LinkError` and, for a value that the variable cannot have, `Fault`."""
         if isinstance(change.target, str):
             self._tasks[change.task].inside.put(change.target, change.value, change.frame)
-        elif self._controller is None:
-            raise LinkError(
-                f"{change.target[0]} belongs to the controller, which is not available here"
-            )
         else:
             self._controller.assign(change.target, change.value)
 
-    def _names_of(self, task: TaskName, frame: int) -> tuple[Any, Any, Any]:
-        """Return the functions with which `evaluated` looks up names in a frame."""
-        read = None if self._controller is None else self._controller.look
+    def _evaluation(self, task: TaskName, frame: int) -> Evaluation:
+        """Return what evaluates expressions in a frame."""
         place = self._tasks[task].inside.frames()[frame]
-
-        def look(text: str) -> InspectedValue | None:
-            return self.seen(text, task, frame)
-
-        return look, read, partial(signal_in, self._program, place)
+        return Evaluation(
+            lambda text: self.seen(text, task, frame),
+            self._controller.look,
+            partial(signal_in, self._program, place),
+        )
 
 
 def _named(frame: StackFrame, levels: list[tuple[LevelKind, int]]) -> StackFrame:
