@@ -71,35 +71,24 @@ def _atan2(y: float, x: float) -> float:
 
 
 def _function(
-    name: str,
-    function: Callable[..., Any],
-    faults: str,
-    sentence: str,
-    operands: tuple[Kind, ...] = ("REAL",),
+    name: str, function: Callable[..., Any], faults: str = "", operands: int = 1
 ) -> Primitive:
-    return Primitive(name, operands, "REAL", function, tuple(faults.split()), sentence)
+    kinds: tuple[Kind, ...] = ("REAL",) * operands
+    return Primitive(name, kinds, "REAL", function, tuple(faults.split()))
 
 
 #: Functions of numbers and poses, by their names in KRL.
 FUNCTIONS: Mapping[str, Primitive] = MappingProxyType(
     {
-        "ABS": _function("abs", abs, "", "the number without its sign"),
-        "SQRT": _function("sqrt", _sqrt, "domain", "the square root"),
-        "SIN": _function("sin", lambda a: single(math.sin(radians(a))), "", "the sine"),
-        "COS": _function("cos", lambda a: single(math.cos(radians(a))), "", "the cosine"),
-        "TAN": _function("tan", _tan, "domain", "the tangent"),
-        "ACOS": _function("acos", _acos, "domain", "the angle from 0 to 180 of a cosine"),
-        "ATAN2": _function(
-            "atan2",
-            _atan2,
-            "domain",
-            "the angle from -180 to 180 of the point y, x",
-            ("REAL", "REAL"),
-        ),
+        "ABS": _function("abs", abs),
+        "SQRT": _function("sqrt", _sqrt, "domain"),
+        "SIN": _function("sin", lambda a: single(math.sin(radians(a)))),
+        "COS": _function("cos", lambda a: single(math.cos(radians(a)))),
+        "TAN": _function("tan", _tan, "domain"),
+        "ACOS": _function("acos", _acos, "domain"),
+        "ATAN2": _function("atan2", _atan2, "domain", operands=2),
         "INV_POS": Primitive(
-            *("inv_pos", ("FRAME",), "FRAME", inverted),
-            ("uninitialised", "overflow"),
-            "the inverse of a pose",
+            "inv_pos", ("FRAME",), "FRAME", inverted, ("uninitialised", "overflow")
         ),
     }
 )

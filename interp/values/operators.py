@@ -46,7 +46,7 @@ Kind = Literal["INT", "REAL", "BOOL", "CHAR", "ENUM", "FRAME"]
 class Primitive:
     """An operation on operands of fixed kinds.
 
-    ``faults`` are the slugs of the faults that it can raise; ``sentence`` describes its result.
+    ``faults`` are the slugs of the faults that it can raise.
     """
 
     name: str
@@ -54,7 +54,6 @@ class Primitive:
     result: Kind
     function: Callable[..., Any]
     faults: tuple[str, ...]
-    sentence: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,64 +97,56 @@ def _letter(code: int) -> str:
 
 # ------------------------------------------------------------------------------- the table
 
-_Row = tuple[str, str, Callable[..., Any], str, str]
+_Row = tuple[str, str, Callable[..., Any], str]
+#: The relations of each kind of operands, by their names in Python.
+_RELATIONS: Mapping[Kind, str] = {
+    "INT": "eq ne lt gt le ge",
+    "REAL": "eq ne lt gt le ge",
+    "BOOL": "eq ne",
+    "ENUM": "eq ne",
+}
 
-# Name, kinds of the operands and of the result, function, faults, sentence. For + - * / and the
-# square root of singles, computing in double and rounding once equals single-precision arithmetic.
+# Name, kinds of the operands and of the result, function, faults. For + - * / and the square root
+# of singles, computing in double and rounding once equals single-precision arithmetic.
 _ROWS: tuple[_Row, ...] = (
-    ("add_int", "INT INT INT", lambda a, b: integer(a + b), "overflow", "the sum"),
-    ("sub_int", "INT INT INT", lambda a, b: integer(a - b), "overflow", "the difference"),
-    ("mul_int", "INT INT INT", lambda a, b: integer(a * b), "overflow", "the product"),
-    (
-        *("div_int", "INT INT INT", _divided, "division_by_zero overflow"),
-        "the quotient, its fraction dropped",
+    ("add_int", "INT INT INT", lambda a, b: integer(a + b), "overflow"),
+    ("sub_int", "INT INT INT", lambda a, b: integer(a - b), "overflow"),
+    ("mul_int", "INT INT INT", lambda a, b: integer(a * b), "overflow"),
+    ("div_int", "INT INT INT", _divided, "division_by_zero overflow"),
+    ("neg_int", "INT INT", lambda a: integer(-a), "overflow"),
+    ("add_real", "REAL REAL REAL", lambda a, b: single(a + b), "overflow"),
+    ("sub_real", "REAL REAL REAL", lambda a, b: single(a - b), "overflow"),
+    ("mul_real", "REAL REAL REAL", lambda a, b: single(a * b), "overflow"),
+    ("div_real", "REAL REAL REAL", _quotient, "division_by_zero overflow"),
+    ("neg_real", "REAL REAL", python.neg, ""),
+    *(
+        (f"{name}_{kind.lower()}", f"{kind} {kind} BOOL", getattr(python, name), "")
+        for kind, names in _RELATIONS.items()
+        for name in names.split()
     ),
-    ("neg_int", "INT INT", lambda a: integer(-a), "overflow", "the number with the other sign"),
-    ("add_real", "REAL REAL REAL", lambda a, b: single(a + b), "overflow", "the sum"),
-    ("sub_real", "REAL REAL REAL", lambda a, b: single(a - b), "overflow", "the difference"),
-    ("mul_real", "REAL REAL REAL", lambda a, b: single(a * b), "overflow", "the product"),
-    ("div_real", "REAL REAL REAL", _quotient, "division_by_zero overflow", "the quotient"),
-    ("neg_real", "REAL REAL", python.neg, "", "the number with the other sign"),
-    ("eq_int", "INT INT BOOL", python.eq, "", "whether both are equal"),
-    ("ne_int", "INT INT BOOL", python.ne, "", "whether both differ"),
-    ("lt_int", "INT INT BOOL", python.lt, "", "whether the first is less"),
-    ("gt_int", "INT INT BOOL", python.gt, "", "whether the first is greater"),
-    ("le_int", "INT INT BOOL", python.le, "", "whether the first is less or equal"),
-    ("ge_int", "INT INT BOOL", python.ge, "", "whether the first is greater or equal"),
-    ("eq_real", "REAL REAL BOOL", python.eq, "", "whether both are equal, to the last bit"),
-    ("ne_real", "REAL REAL BOOL", python.ne, "", "whether both differ, if only in the last bit"),
-    ("lt_real", "REAL REAL BOOL", python.lt, "", "whether the first is less"),
-    ("gt_real", "REAL REAL BOOL", python.gt, "", "whether the first is greater"),
-    ("le_real", "REAL REAL BOOL", python.le, "", "whether the first is less or equal"),
-    ("ge_real", "REAL REAL BOOL", python.ge, "", "whether the first is greater or equal"),
-    ("eq_bool", "BOOL BOOL BOOL", python.eq, "", "whether both are equal"),
-    ("ne_bool", "BOOL BOOL BOOL", python.ne, "", "whether both differ"),
-    ("eq_enum", "ENUM ENUM BOOL", python.eq, "", "whether both are the same constant"),
-    ("ne_enum", "ENUM ENUM BOOL", python.ne, "", "whether both are different constants"),
-    ("not_bool", "BOOL BOOL", python.not_, "", "the opposite"),
-    ("and_bool", "BOOL BOOL BOOL", python.and_, "", "whether both are TRUE"),
-    ("or_bool", "BOOL BOOL BOOL", python.or_, "", "whether one is TRUE, or both"),
-    ("exor_bool", "BOOL BOOL BOOL", python.xor, "", "whether one is TRUE and not both"),
-    ("not_bits", "INT INT", python.invert, "", "all 32 bits turned over"),
-    ("and_bits", "INT INT INT", python.and_, "", "the bits that both have"),
-    ("or_bits", "INT INT INT", python.or_, "", "the bits that one has, or both"),
-    ("exor_bits", "INT INT INT", python.xor, "", "the bits that one has and not both"),
-    ("compose", "FRAME FRAME FRAME", composed, "uninitialised overflow", "the pose left:right"),
-    ("int_to_real", "INT REAL", single, "", "the number, rounded to single"),
-    ("real_to_int", "REAL INT", rounded, "overflow", "the nearest INT, halves away from zero"),
-    ("char_to_int", "CHAR INT", _code, "operand", "the code of the letter"),
-    ("int_to_char", "INT CHAR", _letter, "inadmissible", "the letter of the code, 0 to 255"),
+    ("not_bool", "BOOL BOOL", python.not_, ""),
+    ("and_bool", "BOOL BOOL BOOL", python.and_, ""),
+    ("or_bool", "BOOL BOOL BOOL", python.or_, ""),
+    ("exor_bool", "BOOL BOOL BOOL", python.xor, ""),
+    ("not_bits", "INT INT", python.invert, ""),
+    ("and_bits", "INT INT INT", python.and_, ""),
+    ("or_bits", "INT INT INT", python.or_, ""),
+    ("exor_bits", "INT INT INT", python.xor, ""),
+    ("compose", "FRAME FRAME FRAME", composed, "uninitialised overflow"),
+    ("int_to_real", "INT REAL", single, ""),
+    ("real_to_int", "REAL INT", rounded, "overflow"),
+    ("char_to_int", "CHAR INT", _code, "operand"),
+    ("int_to_char", "INT CHAR", _letter, "inadmissible"),
 )
 
 
-def _primitive(row: _Row) -> Primitive:
-    name, kinds, function, faults, sentence = row
+def _primitive(name: str, kinds: str, function: Callable[..., Any], faults: str) -> Primitive:
     *operands, result = cast("list[Kind]", kinds.split())
-    return Primitive(name, tuple(operands), result, function, tuple(faults.split()), sentence)
+    return Primitive(name, tuple(operands), result, function, tuple(faults.split()))
 
 
 #: All primitives by name, in a fixed order.
-PRIMITIVES: Mapping[str, Primitive] = MappingProxyType({row[0]: _primitive(row) for row in _ROWS})
+PRIMITIVES: Mapping[str, Primitive] = MappingProxyType({row[0]: _primitive(*row) for row in _ROWS})
 
 #: The primitives of an operator, from narrow to wide: the first to which its operands convert.
 BINARY: Mapping[str, tuple[str, ...]] = {

@@ -107,7 +107,7 @@ class Memory:
         self._writer.insert(place, Op.VIEW, self._emitter.number(value.type))
         return View(value.type.element, len(value.type.sizes), elements(value.type))
 
-    def read(self, place: SystemVariable) -> Value:
+    def read(self, place: SystemVariable) -> Scalar | Reference:
         """Generate a request for the value of a system variable."""
         type_ = place.type
         if not is_complete(type_):
@@ -116,12 +116,16 @@ class Memory:
         type_ = self._emitter.closed(type_)
         path = self.pushed_path(place)
         ask = self._context.tables.ask(Ask("Read", (path,), self._emitter.number(type_)))
+        return self.answered(Op.ASK, ask, type_)
+
+    def answered(self, op: Op, entry: int, type_: Type) -> Scalar | Reference:
+        """Generate a request or function with a result; a large one is stored in the frame."""
         if isinstance(type_, Plain):
-            self._emit(Op.ASK, ask)
+            self._emit(op, entry)
             return Scalar(type_)
         kept = FrameCells(self._writer.temporary(type_), type_)
         self.refer(kept)
-        self._emit(Op.ASK, ask)
+        self._emit(op, entry)
         self.refer(kept)
         return Reference(type_)
 

@@ -11,7 +11,6 @@ from grammar.semantics.predefined import PredefinedParameter, System
 from grammar.semantics.types import CHAR, REAL, UNKNOWN, Type
 from grammar.syntax import ast
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cell_layout import Plain
 from interp.bytecode.compiler.expressions import CodeMaker
 from interp.bytecode.compiler.locations import (
     FrameCells,
@@ -67,33 +66,26 @@ class PredefinedCalls(CodeMaker):
             raise self._emitter.refuse(str(untyped_result(name)))
         if is_builtin and not function.takes(len(node.arguments)):
             raise self._emitter.fail("argument")
-        if result is None or result == UNKNOWN:
-            self._cross(name, parts, None, is_builtin=is_builtin)
+        closed = None if result is None or result == UNKNOWN else self._emitter.closed(result)
+        number = None if closed is None else self._emitter.number(closed)
+        op, entry = self._entry(name, tuple(parts), number, is_builtin=is_builtin)
+        if closed is None:
+            self._emit(op, entry)
             return None
-        closed = self._emitter.closed(result)
-        number = self._emitter.number(closed)
-        if isinstance(closed, Plain):
-            self._cross(name, parts, number, is_builtin=is_builtin)
-            return Scalar(closed)
-        kept = FrameCells(self._writer.temporary(closed), closed)
-        self._memory.refer(kept)
-        self._cross(name, parts, number, is_builtin=is_builtin)
-        self._memory.refer(kept)
-        return Reference(closed)
+        return self._memory.answered(op, entry, closed)
 
-    def _cross(
-        self, name: str, parts: list[Argument], result: int | None, *, is_builtin: bool
-    ) -> None:
+    def _entry(
+        self, name: str, parts: tuple[Argument, ...], result: int | None, *, is_builtin: bool
+    ) -> tuple[Op, int]:
+        """Return the instruction for a call, and its entry in a table."""
         tables = self._context.tables
         if not is_builtin:
             assert name in WORLD, "what does not compute needs the world"
-            ask = Ask("Invoke", (Constant(name), Items(tuple(parts))), result)
-            self._emit(Op.ASK, tables.ask(ask))
-            return
-        builtin = Builtin(name, tuple(parts), result)
+            return Op.ASK, tables.ask(Ask("Invoke", (Constant(name), Items(parts)), result))
+        builtin = Builtin(name, parts, result)
         if call_mismatch(Program(tuple(tables.types), (), (), (), (), (), ()), builtin):
             raise self._emitter.fail("argument")
-        self._emit(Op.BUILTIN, tables.builtin(builtin))
+        return Op.BUILTIN, tables.builtin(builtin)
 
     def _argument(
         self,
@@ -154,7 +146,6 @@ class PredefinedCalls(CodeMaker):
         """Push a copy of a system variable, which is written back if it has changed."""
         behind = self._writer.here
         value = self._memory.read(place)
-        assert isinstance(value, Scalar | Reference), "what is read has a known type"
         kept = FrameCells(self._writer.temporary(value.type), value.type)
         if isinstance(value, Scalar):
             self._emit(Op.STORE_LOCAL, kept.offset)

@@ -31,8 +31,9 @@ class ArithmeticRules(Rules):
             Op[name.upper()]: partial(self._primitive, primitive)
             for name, primitive in PRIMITIVES.items()
         }
-        for name, compare in _COMPARISONS.items():
-            rules[Op[f"UNLESS_{name}"]] = partial(self._unless, compare)
+        for name, primitive in PRIMITIVES.items():
+            if unless := Op.__members__.get(f"UNLESS_{name.upper()}"):
+                rules[unless] = partial(self._unless, primitive.function)
         for sign, compute in (("ADD", operator.add), ("SUB", operator.sub), ("MUL", operator.mul)):
             rules[Op[f"{sign}_INT"]] = partial(self._whole, compute)
             rules[Op[f"{sign}_REAL"]] = partial(self._single, compute)
@@ -131,20 +132,3 @@ class ArithmeticRules(Rules):
             return after
 
         return operation
-
-
-_INT_COMPARISONS: Mapping[str, Callable[[Any, Any], bool]] = {
-    "EQ": operator.eq,
-    "NE": operator.ne,
-    "LT": operator.lt,
-    "GT": operator.gt,
-    "LE": operator.le,
-    "GE": operator.ge,
-}
-#: The comparisons of instructions that jump unless the comparison is true.
-_COMPARISONS: Mapping[str, Callable[[Any, Any], bool]] = {
-    f"{name}_{kind}": compare
-    for name, compare in _INT_COMPARISONS.items()
-    for kind in ("INT", "REAL")
-    if f"UNLESS_{name}_{kind}" in Op.__members__
-}

@@ -169,10 +169,9 @@ def test_every_predefined_routine_has_its_place() -> None:
 
 
 def test_functions_are_described() -> None:
-    """A function has a sentence, faults of the catalogue, and as many operands as parameters."""
+    """A function has faults of the catalogue, and as many operands as parameters."""
     for name, primitive in FUNCTIONS.items():
         assert primitive.name == name.lower()
-        assert primitive.sentence
         assert set(primitive.faults) <= set(FAULTS)
         assert len(primitive.operands) == len(BUILTINS[name].declared.parameters)
 

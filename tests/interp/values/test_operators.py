@@ -85,10 +85,9 @@ def test_table_has_all_operators() -> None:
 
 
 def test_primitives_are_described() -> None:
-    """A primitive has a name of its own, a sentence, and faults that are in the catalogue."""
+    """A primitive has a name of its own, and faults that are in the catalogue."""
     for name, primitive in PRIMITIVES.items():
         assert name == primitive.name
-        assert primitive.sentence
         assert set(primitive.faults) <= set(FAULTS)
 
 
