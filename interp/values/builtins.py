@@ -71,10 +71,12 @@ def _atan2(y: float, x: float) -> float:
 
 
 def _function(
-    name: str, function: Callable[..., Any], faults: str = "", operands: int = 1
+    name: str,
+    function: Callable[..., Any],
+    faults: str = "",
+    operands: tuple[Kind, ...] = ("REAL",),
 ) -> Primitive:
-    kinds: tuple[Kind, ...] = ("REAL",) * operands
-    return Primitive(name, kinds, "REAL", function, tuple(faults.split()))
+    return Primitive(name, operands, "REAL", function, tuple(faults.split()))
 
 
 #: Functions of numbers and poses, by their names in KRL.
@@ -86,7 +88,7 @@ FUNCTIONS: Mapping[str, Primitive] = MappingProxyType(
         "COS": _function("cos", lambda a: single(math.cos(radians(a)))),
         "TAN": _function("tan", _tan, "domain"),
         "ACOS": _function("acos", _acos, "domain"),
-        "ATAN2": _function("atan2", _atan2, "domain", operands=2),
+        "ATAN2": _function("atan2", _atan2, "domain", ("REAL", "REAL")),
         "INV_POS": Primitive(
             "inv_pos", ("FRAME",), "FRAME", inverted, ("uninitialised", "overflow")
         ),
