@@ -14,14 +14,19 @@ from types import MappingProxyType
 class RuntimeFailure(Exception):
     """Base of everything that ends a run; its text is one clear line."""
 
-    #: Whether only one statement has failed, so that later ones may still succeed.
-    is_of_statement = False
+    @property
+    def is_of_statement(self) -> bool:
+        """Return whether only one statement has failed, so that later ones may still succeed."""
+        return False
 
 
 class LinkError(RuntimeFailure):
     """The program cannot run: a name it uses is declared nowhere, or the check found an error."""
 
-    is_of_statement = True
+    @property
+    def is_of_statement(self) -> bool:
+        """See `RuntimeFailure`."""
+        return True
 
 
 class Fault(RuntimeFailure):
@@ -39,7 +44,11 @@ class Fault(RuntimeFailure):
         self.text = text
         self.number = number
         self.rules = rules
-        self.is_of_statement = slug != "stack"
+
+    @property
+    def is_of_statement(self) -> bool:
+        """Return whether only one statement has failed: not so for a stack overflow."""
+        return self.slug != "stack"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Fault) and (self.slug, self.text) == (other.slug, other.text)
