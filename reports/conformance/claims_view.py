@@ -6,8 +6,9 @@ The paper is Mühe, Angerer, Hoffmann and Reif, "On reverse-engineering the KUKA
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 from reports.rendering.number_format import Figure, counted, percent, share
@@ -44,15 +45,13 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Claim:
-    """A claim of the paper: its statement, our finding, and figures.
+    """Our finding on a claim of the paper, and figures. The page's template states the claim.
 
     ``command`` is the one that measures the claim, set if there is no measurement. ``is_kept`` says
     whether our figure reaches the paper's, ``None`` if they cannot be compared.
     """
 
     anchor: str
-    title: str
-    paper: str
     found: str = ""
     is_kept: bool | None = None
     headings: tuple[str, ...] = ()
@@ -67,12 +66,8 @@ def claims_view(found: Mapping[str, Any]) -> Json:
     return {
         "figures": [*_figures(by_name)],
         "claims": [
-            _growth(by_name["growth"]),
-            _clusters(by_name["recover"]),
-            _bytecode(by_name["bench-vm"]),
-            _in_c(by_name["bench-vm"]),
-            _batches(by_name["bench-arm"]),
-            _sensitivity(by_name["bench-conform"]),
+            Claim(anchor, **(measured(by_name[name]) or {"command": _COMMANDS[name]}))
+            for anchor, name, measured in _CLAIMS
         ],
         "left_out": [*_left_out(by_name["conform"], by_name["conform-arm"])],
         "left_out_command": "" if by_name["conform"] else _COMMANDS["conform"],
@@ -105,30 +100,22 @@ def _times(ratio: float) -> str:
     return f"{ratio:,.{0 if ratio >= 100 else 1}f} ×"
 
 
-def _absent(anchor: str, title: str, paper: str, name: str) -> Claim:
-    return Claim(anchor, title, paper, command=_COMMANDS[name])
-
+# Each of the following returns the fields of a claim that were measured; none if nothing was.
 
 # ------------------------------------------------------------------------------------ the grammar
 
 
-def _growth(record: Record) -> Claim:
-    title = "A grammar grows from what does not parse"
-    paper = (
-        "A grammar that begins restrictive and is widened at each parse error comes to read real "
-        "controller source: about 1 MB of it."
-    )
+def _growth(record: Record) -> Json:
     steps, files = records(record, "steps"), count(record, "files")
     if not steps or not files:
-        return _absent("growth", title, paper, "growth")
+        return {}
     first, last = count(steps[0], "parsed"), count(steps[-1], "parsed")
     found = (
         f"{files:,} files, {count(record, 'bytes') / 1e6:.1f} MB. {percent(first, files)} parse "
         f"under the restrictive start, {percent(last, files)} after {len(steps) - 1:,} constructs, "
         "each accepted with its evidence."
     )
-    curve = _curve([count(one, "parsed") / files for one in steps])
-    return Claim("growth", title, paper, found, curve=curve)
+    return {"found": found, "curve": _curve([count(one, "parsed") / files for one in steps])}
 
 
 def _curve(values: Sequence[float]) -> Json:
@@ -165,16 +152,14 @@ def _curve(values: Sequence[float]) -> Json:
     }
 
 
-def _clusters(record: Record) -> Claim:
-    title = "Failures are few causes"
-    paper = "Parse errors were looked at one by one, and each led to a construct that was missing."
+def _clusters(record: Record) -> Json:
     clusters = records(nested(record, "start"), "clusters") or records(record, "clusters")
     if not record:
-        return _absent("clusters", title, paper, "recover")
+        return {}
     failures = sum(count(one, "failures") for one in clusters)
     if not clusters:
         found = "No failure is left under the grammar in force: there is nothing to group."
-        return Claim("clusters", title, paper, found, command=_COMMANDS["recover"])
+        return {"found": found, "command": _COMMANDS["recover"]}
     where = "Under the restrictive start " if nested(record, "start") else ""
     found = (
         f"{where}{failures:,} failures have {counted(len(clusters), 'cause')}; the first "
@@ -196,33 +181,16 @@ def _clusters(record: Record) -> Claim:
         for one in ranked
     )
     headings = ("cause", "failures", "files", "unlocks")
-    return Claim("clusters", title, paper, found, headings=headings, bars=bars)
+    return {"found": found, "headings": headings, "bars": bars}
 
 
 # ------------------------------------------------------------------------------------ executors
 
 
-def _bytecode(record: Record) -> Claim:
-    title = "Bytecode is some six times as fast as the tree"
-    paper = (
-        "The bytecode interpreter was about 6 times as fast as the tree interpreter in the same "
-        "language."
-    )
-    return _speed("bytecode", title, paper, record, "vm", "in Python", 6.0)
-
-
-def _in_c(record: Record) -> Claim:
-    title = "In C it is up to 300 times as fast, and drives the robot"
-    paper = "A prototype in C was up to 300 times as fast, but it could not drive the robot."
-    return _speed("c", title, paper, record, "native", "in C", 300.0)
-
-
-def _speed(
-    anchor: str, title: str, paper: str, record: Record, name: str, where: str, aim: float
-) -> Claim:
+def _speed(record: Record, name: str, where: str, aim: float) -> Json:
     ratio = number(record, f"{name}_vs_tree")
     if not ratio:
-        return _absent(anchor, title, paper, "bench-vm")
+        return {}
     rows = [
         (text(row, "name"), number(ns, "tree"), number(ns, name))
         for row in records(record, "kernels")
@@ -243,21 +211,16 @@ def _speed(
     )
     is_kept = ratio >= aim or (name == "native" and most >= aim)
     headings = ("kernel", "tree, ns", f"{where}, ns", "times")
-    return Claim(anchor, title, paper, found, is_kept, headings, bars)
+    return {"found": found, "is_kept": is_kept, "headings": headings, "bars": bars}
 
 
 # ------------------------------------------------------------------------------------ motion
 
 
-def _batches(record: Record) -> Claim:
-    title = "Motions queued and executed in one go cost time"
-    paper = (
-        "Motions are queued until one cannot be blended, then executed as a batch: blending is "
-        "right, and the arm starts late."
-    )
+def _batches(record: Record) -> Json:
     batch, ahead = number(record, "simulated_s_batch"), number(record, "simulated_s_lookahead")
     if not batch or not ahead:
-        return _absent("batches", title, paper, "bench-arm")
+        return {}
     thinking = number(record, "thinking_us") / 1000
     found = (
         f"{count(record, 'motions'):,} motions take {ahead:.2f} s when each is planned as soon as "
@@ -268,15 +231,13 @@ def _batches(record: Record) -> Claim:
         Bar(label, (f"{value:.2f} s",), share(value, max(batch, ahead)))
         for label, value in (("look-ahead", ahead), ("batches", batch))
     )
-    return Claim("batches", title, paper, found, None, ("strategy", "simulated"), bars)
+    return {"found": found, "headings": ("strategy", "simulated"), "bars": bars}
 
 
-def _sensitivity(record: Record) -> Claim:
-    title = "What agreement is worth"
-    paper = "It compares its interpreters by their speed; how far they agree it does not measure."
+def _sensitivity(record: Record) -> Json:
     planted = count(record, "mutants")
     if not planted:
-        return _absent("worth", title, paper, "bench-conform")
+        return {}
     killed = count(record, "killed")
     aim = number(record, "aim")
     failing = count(record, "failing")
@@ -310,7 +271,19 @@ def _sensitivity(record: Record) -> Claim:
         for one in records(record, "groups")
     )
     headings = ("faults in", "planted", "found", "by a failure", "share")
-    return Claim("worth", title, paper, found, killed >= aim * planted, headings, bars)
+    is_kept = killed >= aim * planted
+    return {"found": found, "is_kept": is_kept, "headings": headings, "bars": bars}
+
+
+#: Anchor, the name of the record, and what was measured in it.
+_CLAIMS: Final[tuple[tuple[str, str, Callable[[Record], Json]], ...]] = (
+    ("growth", "growth", _growth),
+    ("clusters", "recover", _clusters),
+    ("bytecode", "bench-vm", partial(_speed, name="vm", where="in Python", aim=6.0)),
+    ("c", "bench-vm", partial(_speed, name="native", where="in C", aim=300.0)),
+    ("batches", "bench-arm", _batches),
+    ("worth", "bench-conform", _sensitivity),
+)
 
 
 # ------------------------------------------------------------------------------------ left out
