@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import inspect
 import logging
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
+from functools import partial
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcInvalidParams
@@ -32,16 +32,9 @@ from krl.running.project_folders import project_root
 # Seconds without a change after which files without an open view are checked.
 _PAUSE = 0.3
 
-_AtPlace = (
-    lsp.HoverParams
-    | lsp.DefinitionParams
-    | lsp.CompletionParams
-    | lsp.DocumentHighlightParams
-    | lsp.PrepareRenameParams
-    | lsp.ReferenceParams
-    | lsp.RenameParams
-    | lsp.SignatureHelpParams
-)
+#: The answer to each request, by its method, with the options that an editor is told.
+_ANSWERS: dict[str, tuple[Any, Callable[..., Any]]] = {}
+_Answer = TypeVar("_Answer", bound=Callable[..., Any])
 
 
 def server() -> LanguageServer:
@@ -69,12 +62,51 @@ class _InUtf16(LanguageServerProtocol):
         return (yield from super().lsp_initialize(params))
 
 
+def _answers(
+    method: str,
+    options: Any = None,
+    *,
+    about: Callable[[_Handlers, Any], Sequence[Any] | None] | None = None,
+    nothing: Callable[[], Any] = lambda: None,
+) -> Callable[[_Answer], _Answer]:
+    """Register a method of `_Handlers` for a request of an editor.
+
+    It gets what the request is ``about`` instead of the request; the answer is ``nothing()`` if
+    there is no such thing.
+    """
+
+    def registered(answer: _Answer) -> _Answer:
+        def answered(handlers: _Handlers, given: Any) -> Any:
+            found = about(handlers, given) if about is not None else None
+            return nothing() if found is None else answer(handlers, *found)
+
+        _ANSWERS[method] = options, answer if about is None else answered
+        return answer
+
+    return registered
+
+
+def _file(handlers: _Handlers, given: Any) -> tuple[AnalysedFile] | None:
+    looked = handlers.project.look(path_of(given.text_document.uri))
+    return None if looked is None else (looked,)
+
+
+def _place(handlers: _Handlers, given: Any) -> tuple[AnalysedFile, int] | None:
+    """Return the file and the offset of a request; ``None`` if the file has no such place."""
+    looked = handlers.project.look(path_of(given.text_document.uri))
+    if looked is None or given.position.line >= len(looked.source.lines):
+        return None
+    line = looked.source.line(given.position.line + 1)
+    column = protocol.characters(line, given.position.character)
+    return looked, looked.source.offset(given.position.line + 1, column + 1)
+
+
 class _Handlers:
     """The session of one editor: its files, and the handlers of its requests."""
 
     def __init__(self, server: LanguageServer) -> None:
         self._server = server
-        self._project = OpenProject()
+        self.project = OpenProject()
         #: The URIs of open files by path, as the editor writes them.
         self._open: dict[str, str] = {}
         #: The files of settings that the editor was told to be refused.
@@ -82,49 +114,12 @@ class _Handlers:
         self._is_read = False
         self._is_graded = False
         self._catching_up: asyncio.Task[None] | None = None
-        answers: dict[str, Callable[[Any], Any]] = {
-            lsp.INITIALIZED: self.initialised,
-            lsp.TEXT_DOCUMENT_DID_OPEN: self.opened,
-            lsp.TEXT_DOCUMENT_DID_CHANGE: self.changed,
-            lsp.TEXT_DOCUMENT_DID_CLOSE: self.closed,
-            lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES: self.changed_on_disk,
-            lsp.TEXT_DOCUMENT_HOVER: self.hover,
-            lsp.TEXT_DOCUMENT_DEFINITION: self.definition,
-            lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL: self.symbols,
-            lsp.TEXT_DOCUMENT_FOLDING_RANGE: self.folds,
-            lsp.TEXT_DOCUMENT_FORMATTING: self.formatting,
-            lsp.TEXT_DOCUMENT_CODE_ACTION: self.actions,
-            lsp.TEXT_DOCUMENT_REFERENCES: self.references,
-            lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: self.highlight,
-            lsp.TEXT_DOCUMENT_INLAY_HINT: self.hints,
-            lsp.WORKSPACE_SYMBOL: self.workspace_symbols,
-        }
-        for method, answer in answers.items():
-            server.feature(method)(_plain(answer))
-        with_options: list[tuple[str, Any, Callable[[Any], Any]]] = [
-            (
-                lsp.TEXT_DOCUMENT_COMPLETION,
-                lsp.CompletionOptions(trigger_characters=["$", "#", "."]),
-                self.completion,
-            ),
-            (
-                lsp.TEXT_DOCUMENT_SIGNATURE_HELP,
-                lsp.SignatureHelpOptions(trigger_characters=["(", ","]),
-                self.signature,
-            ),
-            (
-                lsp.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL,
-                lsp.SemanticTokensLegend(list(TYPES), list(MODIFIERS)),
-                self.tokens,
-            ),
-            (lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True), self.rename),
-            (lsp.TEXT_DOCUMENT_PREPARE_RENAME, None, self.can_be_renamed),
-        ]
-        for method, options, answer in with_options:
-            server.feature(method, options)(_plain(answer))
+        for method, (options, answer) in _ANSWERS.items():
+            server.feature(method, options)(partial(answer, self))
 
     # -- what happens to files
 
+    @_answers(lsp.INITIALIZED)
     async def initialised(self, _given: lsp.InitializedParams) -> None:
         """Read the folders that the editor has open; requests are answered meanwhile."""
         folders: list[lsp.WorkspaceFolder] = []
@@ -134,13 +129,14 @@ class _Handlers:
             path = to_fs_path(folder.uri)
             if path is not None:
                 count = 0
-                for _ in self._project.add_folder(project_root(Path(path))):
+                for _ in self.project.add_folder(project_root(Path(path))):
                     count += 1
                     await asyncio.sleep(0)
                 logging.getLogger(__name__).info("%d files below %s", count, path)
         self._is_read = True
         self._publish()
 
+    @_answers(lsp.TEXT_DOCUMENT_DID_OPEN)
     def opened(self, given: lsp.DidOpenTextDocumentParams) -> None:
         """Use the editor's text of a file instead of the text on disk.
 
@@ -151,31 +147,34 @@ class _Handlers:
             return
         path = path_of(uri)
         self._open[path] = uri
-        self._project.change(path, given.text_document.text)
-        self._project.changed()  # an editor need not watch the settings
+        self.project.change(path, given.text_document.text)
+        self.project.changed()  # an editor need not watch the settings
         self._publish()
 
+    @_answers(lsp.TEXT_DOCUMENT_DID_CHANGE)
     def changed(self, given: lsp.DidChangeTextDocumentParams) -> None:
         """Use the new text of a file."""
         document = self._server.workspace.get_text_document(given.text_document.uri)
         path = path_of(document.uri)
         if path in self._open:
-            self._project.change(path, document.source)
+            self.project.change(path, document.source)
             self._publish()
 
+    @_answers(lsp.TEXT_DOCUMENT_DID_CLOSE)
     def closed(self, given: lsp.DidCloseTextDocumentParams) -> None:
         """Use the text on disk again."""
         path = path_of(given.text_document.uri)
         uri = self._open.pop(path, None)
         if uri is not None:
-            self._project.reload(path)
+            self.project.reload(path)
             self._tell(uri, [])
             self._publish()
 
+    @_answers(lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES)
     def changed_on_disk(self, given: lsp.DidChangeWatchedFilesParams) -> None:
         """Read the files that changed outside the editor."""
         for change in given.changes:
-            self._project.changed_on_disk(path_of(change.uri), self._open)
+            self.project.changed_on_disk(path_of(change.uri), self._open)
         self._publish()
 
     def _publish(self) -> None:
@@ -195,7 +194,7 @@ class _Handlers:
         if self._is_graded:
             await asyncio.sleep(_PAUSE)
         count = 0
-        for _ in self._project.catch_up():
+        for _ in self.project.catch_up():
             count += 1
             await asyncio.sleep(0)
         self._is_graded = True
@@ -204,12 +203,12 @@ class _Handlers:
 
     def _tell_open(self) -> None:
         for path, uri in sorted(self._open.items()):
-            looked = self._project.look(path)
+            looked = self.project.look(path)
             if looked is not None:
                 self._tell(
                     uri, [protocol.diagnostic(looked.source, one) for one in looked.diagnostics]
                 )
-        refused = self._project.refused
+        refused = self.project.refused
         for file in self._refused | refused.keys():
             self._tell(file.as_uri(), [protocol.refusal(refused[file])] if file in refused else [])
         self._refused = {*refused}
@@ -221,51 +220,48 @@ class _Handlers:
 
     # -- what is asked
 
-    def hover(self, given: lsp.HoverParams) -> lsp.Hover | None:
+    @_answers(lsp.TEXT_DOCUMENT_HOVER, about=_place)
+    def hover(self, looked: AnalysedFile, offset: int) -> lsp.Hover | None:
         """Return the meaning of the word under the pointer, with rule and source."""
-        asked = self._asked(given)
-        if asked is None:
-            return None
-        looked, offset = asked
-        said = hover(self._project, looked, offset)
+        said = hover(self.project, looked, offset)
         if said is None:
             return None
         text, region = said
         content = lsp.MarkupContent(kind=lsp.MarkupKind.Markdown, value=text)
         return lsp.Hover(contents=content, range=range_of(looked.source, region))
 
-    def definition(self, given: lsp.DefinitionParams) -> lsp.Location | None:
+    @_answers(lsp.TEXT_DOCUMENT_DEFINITION, about=_place)
+    def definition(self, looked: AnalysedFile, offset: int) -> lsp.Location | None:
         """Return the declaration of the name under the cursor."""
-        asked = self._asked(given)
-        found = None if asked is None else definition(self._project, *asked)
+        found = definition(self.project, looked, offset)
         if found is None:
             return None
-        source = self._project.source(found.path)
+        source = self.project.source(found.path)
         return None if source is None else location(source, found.region)
 
-    def symbols(self, given: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
+    @_answers(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL, about=_file, nothing=list)
+    def symbols(self, looked: AnalysedFile) -> list[lsp.DocumentSymbol]:
         """Return the routines and data of a file."""
-        looked = self._project.look(path_of(given.text_document.uri))
-        if looked is None:
-            return []
         return [protocol.document_symbol(looked.source, one) for one in outline(looked)]
 
+    @_answers(lsp.WORKSPACE_SYMBOL)
     def workspace_symbols(self, given: lsp.WorkspaceSymbolParams) -> list[lsp.WorkspaceSymbol]:
         """Return the routines and data of all files that match a query."""
-        found = (protocol.workspace_symbol(*one) for one in wanted(self._project, given.query))
+        found = (protocol.workspace_symbol(*one) for one in wanted(self.project, given.query))
         return [one for one in found if one is not None]
 
-    def folds(self, given: lsp.FoldingRangeParams) -> list[lsp.FoldingRange]:
+    @_answers(lsp.TEXT_DOCUMENT_FOLDING_RANGE, about=_file, nothing=list)
+    def folds(self, looked: AnalysedFile) -> list[lsp.FoldingRange]:
         """Return the folding ranges of a file: ;FOLD … ;ENDFOLD, routines and blocks."""
-        looked = self._project.look(path_of(given.text_document.uri))
         return [
             lsp.FoldingRange(start_line=first - 1, end_line=last - 1)
-            for first, last in (folds(looked) if looked is not None else ())
+            for first, last in folds(looked)
         ]
 
+    @_answers(lsp.TEXT_DOCUMENT_FORMATTING)
     def formatting(self, given: lsp.DocumentFormattingParams) -> list[lsp.TextEdit] | None:
         """Return the edit that lays the file out as `krl format`; nothing if it cannot be read."""
-        source = self._project.source(path_of(given.text_document.uri))
+        source = self.project.source(path_of(given.text_document.uri))
         if source is None:
             return None
         try:
@@ -280,25 +276,35 @@ class _Handlers:
         )
         return [lsp.TextEdit(range=whole, new_text=text)]
 
-    def completion(self, given: lsp.CompletionParams) -> list[lsp.CompletionItem]:
+    @_answers(
+        lsp.TEXT_DOCUMENT_COMPLETION,
+        lsp.CompletionOptions(trigger_characters=["$", "#", "."]),
+        about=_place,
+        nothing=list,
+    )
+    def completion(self, looked: AnalysedFile, offset: int) -> list[lsp.CompletionItem]:
         """Return the names that can be written at the cursor."""
-        asked = self._asked(given)
-        found = [] if asked is None else completions(*asked)
+        found = completions(looked, offset)
         return [protocol.completion_item(one, place) for place, one in enumerate(found)]
 
-    def signature(self, given: lsp.SignatureHelpParams) -> lsp.SignatureHelp | None:
+    @_answers(
+        lsp.TEXT_DOCUMENT_SIGNATURE_HELP,
+        lsp.SignatureHelpOptions(trigger_characters=["(", ","]),
+        about=_place,
+    )
+    def signature(self, looked: AnalysedFile, offset: int) -> lsp.SignatureHelp | None:
         """Return the parameters of the routine whose arguments are being typed."""
-        asked = self._asked(given)
-        found = None if asked is None else signature_at(*asked)
+        found = signature_at(looked, offset)
         if found is None:
             return None
         parameters = [lsp.ParameterInformation(one) for one in found.parameters]
         said = lsp.SignatureInformation(found.label, parameters=parameters)
         return lsp.SignatureHelp([said], active_signature=0, active_parameter=found.active)
 
+    @_answers(lsp.TEXT_DOCUMENT_INLAY_HINT)
     def hints(self, given: lsp.InlayHintParams) -> list[lsp.InlayHint]:
         """Return parameter names as inlay hints for arguments."""
-        looked = self._project.look(path_of(given.text_document.uri))
+        looked = self.project.look(path_of(given.text_document.uri))
         if looked is None:
             return []
         first, last = given.range.start.line + 1, given.range.end.line + 1
@@ -312,66 +318,67 @@ class _Handlers:
             for one in argument_hints(looked, first, last)
         ]
 
-    def tokens(self, given: lsp.SemanticTokensParams) -> lsp.SemanticTokens:
+    @_answers(
+        lsp.TEXT_DOCUMENT_SEMANTIC_TOKENS_FULL,
+        lsp.SemanticTokensLegend(list(TYPES), list(MODIFIERS)),
+        about=_file,
+        nothing=lambda: lsp.SemanticTokens([]),
+    )
+    def tokens(self, looked: AnalysedFile) -> lsp.SemanticTokens:
         """Return the semantic token of each name."""
-        looked = self._project.look(path_of(given.text_document.uri))
-        if looked is None:
-            return lsp.SemanticTokens([])
         return lsp.SemanticTokens(protocol.encoded(looked.source, semantic_tokens(looked)))
 
-    def highlight(self, given: lsp.DocumentHighlightParams) -> list[lsp.DocumentHighlight]:
+    @_answers(lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT, about=_place, nothing=list)
+    def highlight(self, looked: AnalysedFile, offset: int) -> list[lsp.DocumentHighlight]:
         """Return the places in this file of the name under the cursor."""
-        asked = self._asked(given)
-        found = None if asked is None else found_at(*asked)
-        if asked is None or found is None:
-            return []
-        regions = sorted(highlights(asked[0], found))
-        return [lsp.DocumentHighlight(range_of(asked[0].source, one)) for one in regions]
+        found = found_at(looked, offset)
+        regions = [] if found is None else sorted(highlights(looked, found))
+        return [lsp.DocumentHighlight(range_of(looked.source, one)) for one in regions]
 
-    def references(self, given: lsp.ReferenceParams) -> list[lsp.Location]:
+    @_answers(lsp.TEXT_DOCUMENT_REFERENCES, about=_place, nothing=list)
+    def references(self, looked: AnalysedFile, offset: int) -> list[lsp.Location]:
         """Return all places of a name."""
-        asked = self._asked(given)
-        found = [] if asked is None else places(self._project, *asked)
         return [
             one
-            for path, region in found
-            if (source := self._project.source(path)) and (one := location(source, region))
+            for path, region in places(self.project, looked, offset)
+            if (source := self.project.source(path)) and (one := location(source, region))
         ]
 
-    def can_be_renamed(self, given: lsp.PrepareRenameParams) -> lsp.Range | None:
+    @_answers(lsp.TEXT_DOCUMENT_PREPARE_RENAME, about=_place)
+    def can_be_renamed(self, looked: AnalysedFile, offset: int) -> lsp.Range | None:
         """Return the range of the name to rename, or ``None`` if no file declares it."""
-        asked = self._asked(given)
-        found = None if asked is None else found_at(*asked)
-        if asked is None or found is None or found.module is None:
+        found = found_at(looked, offset)
+        if found is None or found.module is None:
             return None
-        looked, offset = asked
         line, column = looked.source.place(offset)
         for one in highlights(looked, found):
             if one.line == line and one.column <= column <= one.end_column:
                 return range_of(looked.source, one)
         return None
 
+    @_answers(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
     def rename(self, given: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
         """Return the edits that rename a name; an invalid new name is reported to the editor."""
-        asked = self._asked(given)
+        asked = _place(self, given)
         if asked is None:
             return None
         try:
-            found = renaming(self._project, *asked, given.new_name)
+            found = renaming(self.project, *asked, given.new_name)
         except RenameError as error:
             raise JsonRpcInvalidParams(str(error)) from None
         changes: dict[str, list[lsp.TextEdit]] = {}
         for path, region in found:
-            source, uri = self._project.source(path), from_fs_path(path)
+            source, uri = self.project.source(path), from_fs_path(path)
             if source is not None and uri is not None:
                 edit = lsp.TextEdit(range=range_of(source, region), new_text=given.new_name)
                 changes.setdefault(uri, []).append(edit)
         return lsp.WorkspaceEdit(changes=changes)
 
+    @_answers(lsp.TEXT_DOCUMENT_CODE_ACTION)
     def actions(self, given: lsp.CodeActionParams) -> list[lsp.CodeAction]:
         """Return the fixes of findings in a range, and comments that suppress them."""
         uri = given.text_document.uri
-        looked = self._project.look(path_of(uri))
+        looked = self.project.look(path_of(uri))
         if looked is None:
             return []
         source, lines = looked.source, (given.range.start.line, given.range.end.line)
@@ -391,24 +398,3 @@ class _Handlers:
                 edit = lsp.TextEdit(range=range_of(source, place), new_text=text)
                 found.append(protocol.action(f"ignore {one.code} here", uri, edit, shown))
         return found
-
-    def _asked(self, given: _AtPlace) -> tuple[AnalysedFile, int] | None:
-        """Return the file and the offset of a request; ``None`` if the file has no such place."""
-        looked = self._project.look(path_of(given.text_document.uri))
-        if looked is None or given.position.line >= len(looked.source.lines):
-            return None
-        line = looked.source.line(given.position.line + 1)
-        column = protocol.characters(line, given.position.character)
-        return looked, looked.source.offset(given.position.line + 1, column + 1)
-
-
-def _plain(answer: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    """Wrap a method in a function, because pygls sets attributes on handlers."""
-
-    def ask(given: Any) -> Any:
-        return answer(given)
-
-    async def ask_on(given: Any) -> Any:
-        return await answer(given)
-
-    return ask_on if inspect.iscoroutinefunction(answer) else ask
