@@ -6,21 +6,6 @@ from hypothesis import strategies as st
 from recovery.reproducer.ddmin import minimized
 
 
-def test_stretches_go_that_the_test_does_not_need() -> None:
-    """Of a hundred items the two that the test asks for are left, in their order."""
-    assert minimized(list(range(100)), lambda left: {17, 80} <= set(left)) == [17, 80]
-
-
-def test_a_whole_stretch_goes_where_no_part_of_it_can() -> None:
-    """Items that can only go all at once go."""
-    block = {3, 4, 5, 6}
-
-    def all_or_none(left: list[int]) -> bool:
-        return 0 in left and (block <= set(left) or not block & set(left))
-
-    assert minimized(list(range(10)), all_or_none) == [0]
-
-
 def test_pairs_go_together() -> None:
     """Brackets around something that stays go, though neither can go alone."""
 
@@ -28,12 +13,6 @@ def test_pairs_go_together() -> None:
         return "x" in left and left.count("(") == left.count(")")
 
     assert minimized(list("a(b(x)c)"), balanced) == ["x"]
-
-
-def test_what_cannot_be_made_shorter_stays() -> None:
-    """Where nothing else passes, the items come back."""
-    items = list("abc")
-    assert minimized(items, lambda left: left == items) == ["a", "b", "c"]
 
 
 @given(
