@@ -56,7 +56,7 @@ def backup(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def results(backup: Path, *options: str) -> dict[str, dict[str, Any]]:
     record = backup.parent / "record.json"
     arguments = ["bench", "programs", str(backup), "--executor", "tree", "--max-time", "24"]
-    assert 0 == main([*arguments, *options, "--json", str(record)])
+    assert 0 == main([*arguments, *options, "--jobs", "1", "--json", str(record)])
     found = json.loads(record.read_text(encoding="utf-8"))["programs"]
     return {Path(row["path"]).stem: row for row in found}
 
