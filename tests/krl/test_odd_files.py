@@ -2,6 +2,7 @@
 
 import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -32,24 +33,23 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="there are no such pipes")
 @pytest.mark.parametrize("command", COMMANDS)
-def test_a_pipe_is_not_waited_for(
-    here: Path, command: str, capfd: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    "make",
+    [
+        Path.mkdir,
+        pytest.param(
+            getattr(os, "mkfifo", None),
+            marks=pytest.mark.skipif(sys.platform == "win32", reason="there are no such pipes"),
+        ),
+    ],
+)
+def test_no_folder_and_no_pipe_is_a_file(
+    here: Path, command: str, make: Callable[[Path], None], capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """A pipe that nobody writes to is no file; opening it would wait for ever."""
+    """One line says so: opening a pipe that nobody writes to would wait for ever."""
     words = [word.replace("?", "odd") for word in command.split()]
-    os.mkfifo(here / next(word for word in words if word.startswith("odd")))
-    assert 2 == main(words)
-    out, err = capfd.readouterr()
-    assert ("", 1) == (out, len(err.splitlines()))
-
-
-@pytest.mark.parametrize("command", COMMANDS)
-def test_a_folder_is_no_file(here: Path, command: str, capfd: pytest.CaptureFixture[str]) -> None:
-    """A folder in the place of a file is told in one line; a survey looks into it."""
-    words = [word.replace("?", "odd") for word in command.split()]
-    (here / next(word for word in words if word.startswith("odd"))).mkdir()
+    make(here / next(word for word in words if word.startswith("odd")))
     assert 2 == main(words)
     out, err = capfd.readouterr()
     assert ("", 1) == (out, len(err.splitlines()))

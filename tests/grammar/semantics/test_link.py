@@ -20,12 +20,6 @@ from grammar.syntax.walk import walk
 
 CORPUS = GRAMMAR.parents[1] / "corpus"
 BROKEN = "?"
-#: What makes a project look like a whole backup.
-BACKUP = {
-    "KRC/R1/System/$config.dat": "DEFDAT $CONFIG\nENDDAT\n",
-    "KRC/R1/Mada/$machine.dat": "DEFDAT $MACHINE PUBLIC\nENDDAT\n",
-    "KRC/R1/System/bas.src": "DEF BAS()\nEND\n",
-}
 
 
 def file(path: str, text: str, origin: str = "") -> File:
@@ -238,76 +232,6 @@ def test_data_lists_are_paired_within_their_folder() -> None:
 
 
 # -------------------------------------------------------------------------------- what is missing
-
-
-def test_backup_in_which_nothing_is_missing() -> None:
-    """With the lists of the controller, BAS, and all that is called, a missing name is missing."""
-    path = "KRC/R1/Program/a.src"
-    of = project(BACKUP | {path: src("A()", "N=1", "BAS()")})
-    assert of.is_complete
-    assert NotFound() == use(of, path, "N")
-
-
-@pytest.mark.parametrize("missing", BACKUP)
-def test_backup_without_one_of_its_files(missing: str) -> None:
-    """Without what every backup has, any name may be declared elsewhere."""
-    texts = {path: text for path, text in BACKUP.items() if path != missing}
-    path = "KRC/R1/Program/a.src"
-    of = project(texts | {path: src("A()", "N=1")})
-    assert Undetermined(Reason.MODULES_MISSING) == use(of, path, "N")
-
-
-def test_backup_that_calls_a_package_which_is_not_there() -> None:
-    """A package that is missing may bring the data that are not found: weaker, never wrong."""
-    path = "KRC/R1/Program/a.src"
-    of = project(BACKUP | {path: src("A()", "N=1", "PACKAGE()")})
-    assert not of.is_complete
-    assert Undetermined(Reason.MODULES_MISSING) == use(of, path, "N")
-
-
-def test_routine_that_no_controller_has() -> None:
-    """FCT-01: ROUND is no predefined function; where nothing is missing the call leads nowhere."""
-    texts = {"neg.src": src("NEG()", "DECL REAL R", "R=ROUND(2.5)")}
-    assert NotFound() == use(project(texts, is_complete=True), "neg.src", "ROUND")
-    assert isinstance(use(project(texts), "neg.src", "ROUND"), Undetermined)
-
-
-def test_unknown_system_variable() -> None:
-    """No table of system variables is complete, so none of them is certain to be missing."""
-    of = project({"a.src": src("A()", "$OF_SOME_RELEASE=1")}, is_complete=True)
-    assert Undetermined(Reason.SYSTEM) == use(of, "a.src", "$OF_SOME_RELEASE")
-
-
-def test_data_list_that_cannot_be_read() -> None:
-    """It may declare any variable of its module itself, and global ones of all others."""
-    of = project(
-        {
-            "a.src": src("A()", "N=1", "$OV_PRO=M", "$NUM_AX=1", "B()", "GOTO X"),
-            "a.dat": BROKEN,
-            "$machine.dat": dat("$MACHINE PUBLIC", "INT $NUM_AX=6"),
-            "b.src": src("B()", "N=M"),
-            "g.dat": dat("G PUBLIC", "DECL GLOBAL INT N=1"),
-        },
-        is_complete=True,
-    )
-    shadowed = use(of, "a.src", "N")
-    assert isinstance(shadowed, Undetermined)
-    assert ["g.dat"] == list(map(declared_in, shadowed.candidates))
-    assert Undetermined(Reason.UNREADABLE) == use(of, "a.src", "M")
-    assert declared_in(use(of, "a.src", "$OV_PRO")) is None
-    assert "$machine.dat" == declared_in(use(of, "a.src", "$NUM_AX"))
-    assert NotFound() == use(of, "a.src", "X")
-    assert "b.src" == declared_in(use(of, "a.src", "B"))
-    assert "g.dat" == declared_in(use(of, "b.src", "N"))
-    assert Undetermined(Reason.UNREADABLE) == use(of, "b.src", "M")
-
-
-def test_program_that_cannot_be_read() -> None:
-    """It may hold any routine, but no data of others."""
-    texts = {"a.src": src("A()", "N=B()"), "b.src": BROKEN}
-    of = project(texts, is_complete=True)
-    assert Undetermined(Reason.UNREADABLE) == use(of, "a.src", "B")
-    assert NotFound() == use(of, "a.src", "N")
 
 
 def test_every_use_of_an_unknown_name_is_open() -> None:

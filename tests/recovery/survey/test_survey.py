@@ -360,11 +360,3 @@ def test_monstrous_lines_are_read(line: str) -> None:
     file = only(survey_texts([("a.src", f"DEF A()\n{line}\nEND\n")], PRELIMINARY))
     assert RECOGNIZER.accepts(f"DEF A()\n{line}\nEND\n") == (not file.failures)
     assert {f.line for f in file.failures} <= {2}
-
-
-@pytest.mark.parametrize("middle", ["", "?", "C 3"])
-def test_deep_blocks_are_read(middle: str) -> None:
-    """Two thousand blocks inside one another are read, with a failure at the bottom or without."""
-    text = "\n".join(["DEF A()", *["LOOP"] * 2_000, middle, *["ENDLOOP"] * 2_000, "END", ""])
-    file = only(survey_texts([("a.src", text)], PRELIMINARY))
-    assert ([2_002] if middle else []) == [f.line for f in file.failures]

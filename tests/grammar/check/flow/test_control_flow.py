@@ -37,25 +37,6 @@ def test_exit_leaves_any_loop(agrees: Agrees, opener: str) -> None:
     )
 
 
-def test_goto_within_its_blocks(agrees: Agrees) -> None:
-    """GOTO may leave blocks and move about in one, but enters none [CTL-07]."""
-    agrees(
-        routine(
-            "LOOP",
-            "  AGAIN:",
-            "  IF $IN[1] THEN",
-            "    GOTO AGAIN",
-            "  ENDIF",
-            "  GOTO OUTSIDE",
-            "ENDLOOP",
-            "OUTSIDE:",
-            "IF $IN[2] THEN",
-            "  GOTO AGAIN ;> KRL403?",
-            "ENDIF",
-        )
-    )
-
-
 def test_labels_are_known_in_their_routine_only(agrees: Agrees) -> None:
     """A label stands once in a routine, and each routine may have one of that name [CTL-07]."""
     agrees(

@@ -69,48 +69,7 @@ def test_path_needs_a_path(agrees: Agrees, lines: tuple[str, ...]) -> None:
     agrees(routine(*(line.replace("{{", "{").replace("}}", "}") for line in lines)))
 
 
-def test_cyclical_flags(agrees: Agrees) -> None:
-    """Neither functions nor data of the routine, but anything that lasts [IOT-11]."""
-    agrees(
-        {
-            "NEG.src": "\n".join(
-                [
-                    "DEF NEG()",
-                    "DECL BOOL MINE",
-                    "MINE = TRUE",
-                    "$CYCFLAG[1] = $IN[1] AND OURS",
-                    "$CYCFLAG[2] = MINE ;> KSS1609",
-                    "$CYCFLAG[3] = READY() ;> KSS1608",
-                    "$FLAG[3] = READY() AND MINE",
-                    "END",
-                    "DEFFCT BOOL READY()",
-                    "RETURN TRUE",
-                    "ENDFCT",
-                ]
-            ),
-            "NEG.dat": "DEFDAT NEG\nDECL BOOL OURS=TRUE\nENDDAT",
-        }
-    )
-
-
 LONG = "A234567890123456789012345"
-
-
-@pytest.mark.parametrize(
-    "line",
-    [
-        f"DECL INT {LONG[:24]}",
-        f"DECL INT {LONG} ;> KRL105",
-        f"DECL INT A, {LONG}[5] ;> KRL105",
-        f"SIGNAL {LONG} $IN[1] ;> KRL105",
-        f"STRUC {LONG} INT A ;> KRL105",
-        f"STRUC PART INT {LONG} ;> KRL105",
-        f"ENUM COLOUR RED, {LONG} ;> KRL105",
-    ],
-)
-def test_names_of_data(agrees: Agrees, line: str) -> None:
-    """Names have 24 characters at most [TYP-05]."""
-    agrees(f"DEFDAT NEG\n{line}\nENDDAT")
 
 
 def test_names_in_programs(agrees: Agrees) -> None:

@@ -2,40 +2,11 @@
 
 from collections.abc import Callable
 
-import pytest
-
 Agrees = Callable[..., None]
 
 
 def routine(*lines: str) -> str:
     return "\n".join(["DEF NEG()", *lines, "END"])
-
-
-@pytest.mark.parametrize(
-    "instruction",
-    [
-        "$OUT[1] = TRUE",
-        "PULSE($OUT[1], TRUE, 0.5)",
-        "INTERRUPT DECL 21 WHEN $IN[1] DO BRAKE",
-        "HERE:",
-        "HALT",
-        "CONTINUE",
-        "PTP $POS_ACT",
-    ],
-)
-def test_declarations_come_first(agrees: Agrees, instruction: str) -> None:
-    """Behind any instruction no declaration may stand [SCO-09]."""
-    agrees(
-        routine(
-            "EXT WORK()",
-            "DECL INT A",
-            "SIGNAL ON_TABLE $IN[5]",
-            instruction,
-            "DECL INT B ;> KSS2038",
-            "EXT MORE() ;> KSS2038",
-            "A = 1",
-        ),
-    )
 
 
 def test_declarations_stand_in_no_block(agrees: Agrees) -> None:

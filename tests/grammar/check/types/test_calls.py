@@ -122,15 +122,3 @@ DEF WORK(A:IN) ;> KRL115?
 END
 """
     )
-
-
-def test_arrays_by_value(agrees: Agrees) -> None:
-    """An array is passed :OUT, but texts are passed :IN by KUKA's own programs [SCO-07]."""
-    agrees(
-        """
-DEF NEG(TEXT[]:IN, LIST[]:IN, GRID[,]:OUT) ;> KRL307
-  DECL CHAR TEXT[]
-  DECL INT LIST[], GRID[,]
-END
-"""
-    )

@@ -31,14 +31,6 @@ def test_a_public_data_list(agrees: Agrees) -> None:
     agrees({"$CONFIG.dat": "DEFDAT $CONFIG\n  GLOBAL INT A = 1\nENDDAT\n"})
 
 
-def test_module_names(agrees: Agrees) -> None:
-    """A module has the name of its file, in any letter case [SCO-01]."""
-    agrees({"Neg.src": "DEF NEG()\nEND\n", "neg.dat": "DEFDAT nEG\nENDDAT\n"})
-    agrees(
-        {"NEG.src": "DEF OTHER() ;> KSS2051\nEND\n", "NEG.dat": "DEFDAT OTHER ;> KSS2051\nENDDAT\n"}
-    )
-
-
 def test_a_parameter_is_declared_in_the_body(agrees: Agrees) -> None:
     """That is no second declaration; a second one in the body is [SCO-06]."""
     agrees(
