@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from grammar.notation.addresses import sequences
+from grammar.notation.addresses import Address, sequences
 from grammar.notation.edits import AddAlternative, AddRule, AddToken, Edit, Replace
-from grammar.notation.model import Element, Grammar, Group, Reference, Repeat
+from grammar.notation.model import Element, Grammar, Group, Reference
 from grammar.parser.lexer import Lexer
+from recovery.induction.grammar_view import item_of
 from recovery.induction.steps import AcceptedStep
 
 #: The rules that are made where the token of names, or a choice of it and values, has none.
 NAMES = "name"
 OPERANDS = "operand"
+
+#: A rule, the address of an element, what it repeats, and how often.
+_Place = tuple[str, Address, Element, str]
 
 
 def softened(edits: Iterable[Edit], soft: Collection[str], names: str | None) -> tuple[Edit, ...]:
@@ -32,11 +36,9 @@ def names_kept(step: AcceptedStep, used: Collection[str], rules: Iterable[str]) 
 
 def with_names(grammar: Grammar, token: str) -> AcceptedStep:
     """Return a step that introduces a rule of names; ``token`` is the token of names."""
-
-    def is_name(element: Element) -> bool:
-        return isinstance(element, Reference) and element.name == token
-
-    return _with_rule(grammar, NAMES, [token], is_name)
+    every = _elements(grammar)
+    places = [p for p in every if isinstance(p[2], Reference) and p[2].name == token]
+    return _with_rule(grammar, NAMES, [token], places)
 
 
 def with_operands(grammar: Grammar, lexer: Lexer) -> AcceptedStep | None:
@@ -45,38 +47,33 @@ def with_operands(grammar: Grammar, lexer: Lexer) -> AcceptedStep | None:
     ``None`` without such a choice, or if there is a rule of that name.
     """
     found: set[str] = set()
-
-    def is_operand(element: Element) -> bool:
-        every = element.alternatives if isinstance(element, Group) else ()
+    places: list[_Place] = []
+    for place in _elements(grammar):
+        every = place[2].alternatives if isinstance(place[2], Group) else ()
         singles = [a.elements[0] for a in every if len(a.elements) == 1]
         tokens = {e.name for e in singles if isinstance(e, Reference) and e.is_token}
         is_choice = lexer.name in tokens and len(tokens) == len(every) > 1
-        if not is_choice or not all(lexer.has_value(lexer.kind_of[token]) for token in tokens):
-            return False
-        found.update(tokens)
-        return True
-
-    every = [e for r in grammar.rules for _, sequence in sequences(r) for e in sequence.elements]
-    for element in every:
-        is_operand(element.item if isinstance(element, Repeat) else element)
+        if is_choice and all(lexer.has_value(lexer.kind_of[token]) for token in tokens):
+            found |= tokens
+            places.append(place)
     if not found or OPERANDS in grammar.by_name:
         return None
-    tokens = sorted(found, key=lexer.kind_of.__getitem__)
-    return _with_rule(grammar, OPERANDS, tokens, is_operand)
+    return _with_rule(grammar, OPERANDS, sorted(found, key=lexer.kind_of.__getitem__), places)
+
+
+def _elements(grammar: Grammar) -> Iterator[_Place]:
+    """Yield the elements of all parser rules."""
+    for rule in grammar.parser_rules:
+        for address, sequence in sequences(rule):
+            for number, element in enumerate(sequence.elements, 1):
+                yield rule.name, (*address, number), *item_of(element)
 
 
 def _with_rule(
-    grammar: Grammar, name: str, tokens: Sequence[str], is_one: Callable[[Element], bool]
+    grammar: Grammar, name: str, tokens: Sequence[str], places: Iterable[_Place]
 ) -> AcceptedStep:
-    """Return a step that introduces a rule of tokens in place of all elements that are one."""
-    edits: list[Edit] = []
-    for rule in grammar.parser_rules:
-        for address, sequence in sequences(rule):
-            for place, element in enumerate(sequence.elements, 1):
-                often = element.operator if isinstance(element, Repeat) else ""
-                if is_one(element.item if isinstance(element, Repeat) else element):
-                    edits.append(Replace(rule.name, (*address, place), f"{name}{often}"))
+    """Return a step that introduces a rule of tokens in some places."""
+    edits = [Replace(rule, at, f"{name}{often}") for rule, at, _, often in places]
     text = "\n    | ".join(tokens)
     added = AddRule(grammar.parser_rules[-1].name, f"{name}\n    : {text}\n    ;")
-    title = f"{name}s are a rule of their own"
-    return AcceptedStep(title, (added, *edits))
+    return AcceptedStep(f"{name}s are a rule of their own", (added, *edits))
