@@ -154,11 +154,15 @@ def _edits(
     last = names[order[_OTHER][-1]] if order[_OTHER] else names[usual]
     elements = whole.alternatives[0].elements
     is_ended = whole.source_of(elements[-1]) == "EOF"
-    text = f"{line_end}* {body(_OTHER)} {last}?"
+    # without rules of lines: the last line of a file may lack its end
+    outer = " ".join(f"({names[n]} {end})*" for n in order[_OTHER] or [usual])
+    text = f"{line_end}* {outer} {last}?"
     yield Replace(whole.name, (1, 1), text, len(elements) - is_ended)
-    for name, kinds in reversed([*zip(names, classes, strict=True)]):
+    within = {usual}.union(*(order[opener] for opener in known))
+    for place, (name, kinds) in reversed([*enumerate(zip(names, classes, strict=True))]):
         text = "\n    | ".join(written(kind) for kind in forms if kind in kinds)
         yield AddRule(rows.name, f"{name}\n    : {text}\n    ;")
-        yield AddRule(rows.name, f"{name}Line\n    : {name} {end}\n    ;")
+        if place in within:
+            yield AddRule(rows.name, f"{name}Line\n    : {name} {end}\n    ;")
     yield AddRule(rows.name, f"{end}\n    : {line_end}+\n    ;")
     yield from map(RemoveRule, filter(None, (between, rows.name)))
