@@ -320,7 +320,10 @@ class InferredKeywords:
                     or self.lexer.is_keyword(kinds[place - 1])
                 )
             )
-            yield place, word, _Context(line[0], ahead, behind) if is_odd else _PLAIN
+            # of two names ahead of a bracket either may be the keyword: `WAIT FOR (`, `POS P[`
+            is_either = place == 1 and kinds[0] == self.lexer.name_kind and behind in _BEHIND_NAMES
+            other = _OPEN if is_either else _PLAIN
+            yield place, word, _Context(line[0], ahead, behind) if is_odd else other
 
     def _context_of_first(self, line: Sequence[str], kinds: Sequence[int], behind: str) -> _Context:
         """Return the context of a name that begins a line."""

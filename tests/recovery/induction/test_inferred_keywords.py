@@ -111,3 +111,11 @@ def test_names_of_types_in_one_origin(
     shown = [CorpusFile(f"a/{n}", f"{text}X := {n}\n", frozenset({"a"})) for n in range(2)]
     keywords = InferredKeywords(CorpusLines(shown, lexer), lexer, {}, types, 1)
     assert ("MOVE" in keywords.words, found) == (True, "KIND" in keywords.words)
+
+
+@pytest.mark.parametrize(("line", "soft"), [("STAY UNTIL ({} + 1)", False), ("X := UNTIL", True)])
+def test_a_word_behind_another_one_ahead_of_a_bracket(toy: Grammar, line: str, soft: bool) -> None:
+    """It may be the keyword, so it is no name for that."""
+    files = {o: f"UNTIL {o} 1\nUNTIL {o} 2\n{line.format(o)}\n" for o in "ABC"}
+    keywords = _keywords(toy, files)
+    assert (True, soft) == ("UNTIL" in keywords.words, "UNTIL" in keywords.soft)

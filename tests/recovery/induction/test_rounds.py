@@ -534,7 +534,12 @@ def test_a_start_in_another_style_grows() -> None:
         CorpusFile(f"{o}/a.src", t, frozenset(o)) for o, t in zip("ABC", texts, strict=True)
     )
     inner = ("RETURN Z", "WHILE A==B\nENDWHILE", "ENDWHILE", "HALT LIN", "X=1\nDECL INT B")
-    more = (*(f"DEF B()\n{some}\nEND\n" for some in inner), "X=1\n", "DEF B()\n", (texts[0] * 2).strip())
+    more = (
+        *(f"DEF B()\n{some}\nEND\n" for some in inner),
+        "X=1\n",
+        "DEF B()\n",
+        (texts[0] * 2).strip(),
+    )
     for name in ("other", "spelt", "nested"):
         start = read_file(Path(__file__).with_name(f"{name}_style.g4"), read_foreign)
         recognizer = Recognizer(_grown(start, files).grammar)
