@@ -151,7 +151,9 @@ def _is_slip(
             return False
         return not (_numbers(misspelt, start, series) or _numbers(name, start, series))
     swapped = right[start + 1 : start + 2] + right[start : start + 1] + right[start + 2 :]
-    return wrong[start:] == swapped and not _NUMBER.fullmatch(swapped[:2])
+    # as above: a name that ends with the mark has lost its number
+    is_numbered = _NUMBER.fullmatch(swapped[:2]) and wrong[-1] != "_"
+    return wrong[start:] == swapped and not is_numbered
 
 
 def _is_capitalised(name: str) -> bool:

@@ -26,6 +26,7 @@ WORDS = st.from_regex(r"[b-y]{6,12}", fullmatch=True)
         ("gbTime0ut", "gbTimeOut"),
         ("Cil_lndiv_1", "Cil_1ndiv_1"),
         ("STATION_I", "STATION_1"),
+        ("PALLET1_", "PALLET_1"),
     ],
 )
 def test_slips(wrong: str, right: str) -> None:
@@ -51,7 +52,7 @@ def test_slips(wrong: str, right: str) -> None:
         ("EKI_GetInt", "EKI_SetInt"),
         ("SAME", "same"),
         ("STEP_II", "STEP_III"),
-        ("POS_1_2", "POS_12_"),
+        ("POS_1_2A", "POS_12_A"),
     ],
 )
 def test_series_are_no_slips(one: str, other: str) -> None:
