@@ -26,28 +26,27 @@ def _unused(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     What is one slip away from a name of another file that the routine uses is a warning.
     """
     flow = data_flow(context, routine)
-    if not flow.variables and not flow.parameters:
-        return
-    used: set[str] = set()
-    written: set[str] = set()
     table = routine.table.table.spaces[Space.VALUE]
-    others: dict[str, str] = {}
-    for placed in routine.statements:
-        for access in all_accesses(context, placed):
-            key = access.key
-            (written if access.use is Use.WRITTEN else used).add(key)
-            if key not in table and context.found(access.name):
-                others[key] = access.name.text
+    ways = {
+        key: {one.use for one in flow.uses.get(key, ())}
+        for key in sorted(flow.variables | flow.parameters)
+    }
     unused = [
         table[key]
-        for key in sorted((flow.variables | flow.parameters) - used)
-        if table[key].kind is not Kind.PARAMETER or key not in written
+        for key, uses in ways.items()
+        if not uses or (uses == {Use.WRITTEN} and table[key].kind is not Kind.PARAMETER)
     ]
-    typos = Typos(others.values() if unused else ())
+    others = {
+        access.key: access.name.text
+        for placed in (routine.statements if unused else ())
+        for access in all_accesses(context, placed)
+        if access.key not in table and context.found(access.name)
+    }
+    typos = Typos(others.values())
     for symbol in unused:
-        key = symbol.key
-        what = "is assigned to and never read" if key in written else "is never used"
-        may_slip = symbol.kind is Kind.VARIABLE and key not in written
+        is_written = bool(ways[symbol.key])
+        what = "is assigned to and never read" if is_written else "is never used"
+        may_slip = symbol.kind is Kind.VARIABLE and not is_written
         near = typos.meant(symbol.name) if may_slip else ()
         is_slip = len(near) == 1
         yield context.finding(

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from grammar.check.analysis.context import Context
 from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.semantics.symbols import RoutineSymbol, TypeSymbol
 from grammar.syntax import ast
+from grammar.syntax.ast import Span
 
 LONGEST_NAME = 24
 MOST_LOCAL_ROUTINES = 255
@@ -14,20 +16,19 @@ MOST_LOCAL_ROUTINES = 255
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Names that a file declares and that are too long, its own included; too many routines."""
-    declared = list(_declared(context))
+    declared = dict(_declared(context))
     own = context.module.name
+    content = context.syntax.content
     if len(own) > LONGEST_NAME:
-        content = context.syntax.content
         node = content.name if isinstance(content, ast.DataList) else content.routines[0].name
         message = f"the module name {own} has {len(own)} characters; {LONGEST_NAME} are allowed"
         yield context.finding("module-name-too-long", node, message)
         # the routine or data list that carries the name of the file is not distinguished from it
-        declared = [name for name in declared if name.key != own]
-    for name in declared:
-        if len(name.text) > LONGEST_NAME:
-            message = f"{name.text} has {len(name.text)} characters; {LONGEST_NAME} are allowed"
-            yield context.finding("name-too-long", name, message)
-    content = context.syntax.content
+        declared = {span: name for span, name in declared.items() if name.upper() != own}
+    for span, name in declared.items():
+        if len(name) > LONGEST_NAME:
+            message = f"{name} has {len(name)} characters; {LONGEST_NAME} are allowed"
+            yield context.finding("name-too-long", span, message)
     if isinstance(content, ast.Program) and len(content.routines) > MOST_LOCAL_ROUTINES + 1:
         first = content.routines[MOST_LOCAL_ROUTINES + 1]
         count = len(content.routines) - 1
@@ -35,36 +36,15 @@ def check(context: Context) -> Iterator[Diagnostic]:
         yield context.finding("too-many-routines", first.name, message)
 
 
-def _declared(context: Context) -> Iterator[ast.Name]:
-    """Yield the names that a file declares, in the order of the text; a parameter once."""
-    content = context.syntax.content
-    if isinstance(content, ast.DataList):
-        yield content.name
-        yield from _in(content.items)
-        return
-    for routine in context.routines:
-        node = routine.node
-        yield node.name
-        parameters = {parameter.name.key for parameter in node.parameters}
-        yield from (parameter.name for parameter in node.parameters)
-        for name in _in(placed.statement for placed in routine.statements):
-            if name.key not in parameters:
-                yield name
-
-
-def _in(statements: Iterable[ast.Node]) -> Iterator[ast.Name]:
-    for statement in statements:
-        match statement:
-            case ast.VariableDeclaration(declarators=declarators):
-                yield from (declarator.name for declarator in declarators)
-            case ast.Enumeration(name=name, constants=constants):
-                yield name
-                yield from constants
-            case ast.Structure(name=name, groups=groups):
-                yield name
-                for group in groups:
-                    yield from (declarator.name for declarator in group.declarators)
-            case ast.Signal(name=name) | ast.ChannelDefinition(name=name) | ast.Label(name=name):
-                yield name
-            case ast.Importation(declarator=declarator):
-                yield declarator.name
+def _declared(context: Context) -> Iterator[tuple[Span, str]]:
+    """Yield the places and names of what a file declares, not of what it announces of others."""
+    if context.data is not None:
+        yield context.table.span, context.table.name
+    own = {routine.table.routine for routine in context.routines}
+    for table in context.tables:
+        every = (one for _, one in table.symbols())
+        for symbol in (*every, *(one.second for one in table.duplicates)):
+            if not isinstance(symbol, RoutineSymbol) or symbol in own:
+                yield symbol.span, symbol.name
+            if isinstance(symbol, TypeSymbol):
+                yield from ((one.span, one.name) for one in symbol.members.values())
