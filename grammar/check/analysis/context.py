@@ -37,6 +37,14 @@ class PlacedStatement:
     inside: PlacedStatement | None
 
     @property
+    def around(self) -> Iterator[PlacedStatement]:
+        """The statements that contain it, innermost first."""
+        around = self.inside
+        while around is not None:
+            yield around
+            around = around.inside
+
+    @property
     def is_in_spline(self) -> bool:
         """Whether it stands in a spline block."""
         return self.inside is not None and isinstance(self.inside.statement, ast.SplineBlock)
@@ -227,6 +235,20 @@ class Context:
                 self.bounds[node.name] = Bound(slug, use, low, high)
 
     # ----------------------------------------------------------------------- findings
+
+    def line(self, node: Node) -> int:
+        """Return the line on which a node begins, counted from 1."""
+        return self.source.place(node.span[0])[0]
+
+    def head(self, node: Node) -> Span:
+        """Return the part of a node in its first line, without a comment: where to report it."""
+        start, end = node.span
+        line, column = self.source.place(start)
+        shown = self.source.line(line)
+        comment = self.source.comment(line)
+        if comment is not None:
+            shown = shown[: comment.column - 1]
+        return start, max(start + 1, min(end, start - column + 1 + len(shown.rstrip())))
 
     def finding(
         self,

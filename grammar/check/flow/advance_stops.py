@@ -15,7 +15,6 @@ from grammar.check.analysis.accesses import address_of
 from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.context import Context, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode
-from grammar.check.analysis.statement_heads import head, line_of
 from grammar.check.flow.advance_stop_reasons import HARMLESS, AdvanceStop, is_known_call, stop_of
 from grammar.check.flow.routine_summaries import ITSELF, STOPS, Clause, Fact, Summaries, Suspect
 from grammar.diagnostics.diagnostic import Diagnostic, Fix, Region
@@ -65,7 +64,7 @@ class _Routine:
         self._routine = routine
         self._statements = [placed.statement for placed in routine.statements]
         self._continues = [node for node in self._statements if isinstance(node, ast.Continue)]
-        self._spent = {line_of(context.source, node) + 1 for node in self._continues}
+        self._spent = {context.line(node) + 1 for node in self._continues}
         self._ways = routine.ways
         self._known: dict[tuple[ast.Node, bool], AdvanceStop | None] = {}
 
@@ -92,7 +91,7 @@ class _Routine:
         return self._known[key]
 
     def _is_taken_back(self, stop: AdvanceStop) -> bool:
-        return line_of(self._context.source, stop.where) in self._spent
+        return self._context.line(stop.where) in self._spent
 
     def _stops(self, node: ast.Node, is_test: bool) -> Iterator[Diagnostic]:
         stop = self._stop(node, is_test)
@@ -101,7 +100,7 @@ class _Routine:
         fix = Fix("CONTINUE on the line before would let it be done ahead of the robot")
         yield self._context.finding(
             "stops-advance-run",
-            head(self._context.source, stop.where),
+            self._context.head(stop.where),
             f"{stop.what} stops the advance run",
             reason=stop.reason,
             rules=stop.rules,
@@ -129,7 +128,7 @@ class _Routine:
             said = f"{' and '.join(names)} stop{'s' * (len(names) == 1)} the advance run"
             yield Suspect(
                 "no-blend",
-                Region.of(source, head(source, step.statement)),
+                Region.of(source, self._context.head(step.statement)),
                 f"{criteria} is lost: {said}",
                 _EXACT_STOP.format("before the next motion"),
                 ahead.calls,
@@ -142,10 +141,9 @@ class _Routine:
         ahead = self._ahead(motion)
         if not ahead.stops:
             return
-        source = self._context.source
         assert motion.statement is not None
         stopping = [self._stop(step.statement, step.is_test) for step in ahead.stops]
-        lines = sorted({line_of(source, stop.where) for stop in stopping if stop})
+        lines = sorted({self._context.line(stop.where) for stop in stopping if stop})
         shown = ", ".join(map(str, lines[:3])) + (" …" if len(lines) > 3 else "")
         where = f"line{'s' * (len(lines) > 1)} {shown}"
         criteria = _criteria(motion.statement)
@@ -153,7 +151,7 @@ class _Routine:
         how = "where the way leads there" if is_open else "before the next motion"
         yield self._context.finding(
             "no-blend",
-            head(source, motion.statement),
+            self._context.head(motion.statement),
             f"{criteria} is lost: {where} stop{'s' * (len(lines) == 1)} the advance run",
             reason=_EXACT_STOP.format(how),
         )
@@ -204,7 +202,7 @@ class _Routine:
         """CONTINUE before a blank line or a comment."""
         source = self._context.source
         for node in self._continues:
-            following = line_of(source, node) + 1
+            following = self._context.line(node) + 1
             text = source.line(following).strip()
             if not text or text.startswith(";"):
                 what = "a comment" if text else "an empty line"
@@ -234,7 +232,7 @@ class _Routine:
                 todo.append(step)
         for node in found:
             message = f"{_criteria(node)} is lost: $ADVANCE is 0"
-            yield self._context.finding("no-advance", head(self._context.source, node), message)
+            yield self._context.finding("no-advance", self._context.head(node), message)
 
 
 def _criteria(node: ast.Node | None) -> str:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
-from grammar.check.analysis.statement_heads import head, line_of
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
 from grammar.diagnostics.did_you_mean import did_you_mean, one_of
 from grammar.diagnostics.typos import Series, Typos
@@ -59,7 +57,9 @@ def _finding(
 def _exits(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
     for placed in routine.statements:
         statement = placed.statement
-        if type(statement) is ast.Exit and not _is_in_loop(placed):
+        if type(statement) is ast.Exit and not any(
+            type(one.statement) in _LOOPS for one in placed.around
+        ):
             reason = ""
             if placed.inside is not None:
                 block = "SWITCH" if isinstance(placed.inside.statement, ast.Switch) else "IF"
@@ -72,13 +72,6 @@ def _exits(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
                 "CTL-02",
                 reason=reason,
             )
-
-
-def _is_in_loop(placed: PlacedStatement) -> bool:
-    around = placed.inside
-    while around is not None and type(around.statement) not in _LOOPS:
-        around = around.inside
-    return around is not None
 
 
 # ------------------------------------------------------------------------------- GOTO and labels
@@ -96,7 +89,7 @@ def _labels(routine: RoutineBody) -> _Labels:
 
 def _label_twice(context: Context, own: _Labels) -> Iterator[Diagnostic]:
     for first, *others in own.values():
-        line = line_of(context.source, first.statement)
+        line = context.line(first.statement)
         for other in others:
             assert isinstance(other.statement, ast.Label)
             message = f"label {other.statement.name.text} stands on line {line} already"
@@ -137,7 +130,7 @@ def _gotos(
             continue
         block = targets[0].inside
         if block is not None and not _holds(block.statement, goto):
-            line = line_of(context.source, targets[0].statement)
+            line = context.line(targets[0].statement)
             kind = _BLOCKS.get(type(block.statement), "a block")
             message = f"GOTO into {kind}, to {goto.label.text} on line {line}"
             yield _finding(context, "goto-into-block", goto, message, "CTL-07")
@@ -233,24 +226,22 @@ def _unreachable(context: Context, step: FlowNode, before: FlowNode | None) -> D
     assert step.statement is not None
     assert before is not None, "the first statement of a block that is reached is reached"
     assert before.statement is not None
-    source = context.source
-    line = line_of(source, before.statement)
+    line = context.line(before.statement)
     message = f"this is never reached: the program does not continue after line {line}"
-    return context.finding("unreachable", head(source, step.statement), message)
+    return context.finding("unreachable", context.head(step.statement), message)
 
 
 # --------------------------------------------------------------------------- ON_ERROR_PROCEED
 
 
 def _not_suppressed(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    source = context.source
     statements = (placed.statement for placed in routine.statements)
-    for node, _, following, has_effect in suppressions(statements, partial(line_of, source)):
+    for node, _, following, has_effect in suppressions(statements, context.line):
         if has_effect:
             continue
         reason = "nothing on the next line can fail"
         if following is not None:
-            word = source.text[slice(*following.span)].split()[0].upper()
+            word = context.source.text[slice(*following.span)].split()[0].upper()
             reason = f"it does not apply to {word}"
         yield _finding(
             context,

@@ -15,6 +15,7 @@ from grammar.check.analysis.control_flow_graph import FlowNode
 from grammar.check.flow.advance_stop_reasons import is_known_call
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic
+from grammar.notation.model import reached
 from grammar.semantics.scopes import REST
 from grammar.semantics.symbols import Access
 from grammar.syntax import ast
@@ -104,18 +105,12 @@ class _Entered:
 
         ``is_called`` says whether unknown code may call a routine.
         """
-        found = {routine.node.name.key}
-        todo = list(found)
-        while todo:
-            key = todo.pop()
-            if not self._targets.isdisjoint((key, REST)) or (
-                key in self._seen_outside and is_called(self._context, key)
-            ):
-                return True
-            more = self._callers.get(key, set()) - found
-            found |= more
-            todo.extend(more)
-        return False
+        name = routine.node.name.key
+        return any(
+            not self._targets.isdisjoint((key, REST))
+            or (key in self._seen_outside and is_called(self._context, key))
+            for key in reached(self._callers, name) | {name}
+        )
 
 
 def _outside(

@@ -85,7 +85,7 @@ def _possibly_early(
                 value &= ~bits.get(key, 0)
             elif node.statement and key not in reported and bits.get(key, 0) & value:
                 read = place_of[node.statement]
-                asked = set[str]().union(*(_asked(context, one) for one in (read, *_around(read))))
+                asked = set[str]().union(*(_asked(context, one) for one in (read, *read.around)))
                 if asked.isdisjoint(some[key].deciding):
                     reported.add(key)
                     yield access, context.source.place(some[key].offset)[0]
@@ -110,7 +110,7 @@ def _on_conditions(
                     assigned.setdefault(key, []).append(placed)
     found: dict[str, _OnCondition] = {}
     for key, places in assigned.items():
-        blocks = {around for one in places for around in _around(one)}
+        blocks = {around for one in places for around in one.around}
         if blocks or has_jumps:
             beside = [along[one.inside] for one in places if one.inside]
             names = set[str]().union(*(_asked(context, one) for one in blocks), *beside) - {key}
@@ -124,11 +124,3 @@ def _asked(context: Context, placed: PlacedStatement) -> set[str]:
     if type(placed.statement) not in BODIES:
         return set()
     return {access.key for access in accesses(context, placed.statement)}
-
-
-def _around(placed: PlacedStatement) -> Iterator[PlacedStatement]:
-    """Yield the enclosing statements of a statement, innermost first."""
-    around = placed.inside
-    while around is not None:
-        yield around
-        around = around.inside

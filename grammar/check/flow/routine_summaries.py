@@ -17,7 +17,6 @@ from itertools import pairwise
 from grammar.check.analysis.accesses import Parameter, Use, address_of
 from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.context import Bound, Context, RoutineBody
-from grammar.check.analysis.statement_heads import head
 from grammar.check.flow.data_flow import DataFlow, data_flow
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose
 from grammar.semantics.symbols import RoutineSymbol
@@ -228,7 +227,7 @@ class SummaryCollector:
                 if following is not None and type(following) is not ast.Label:
                     seen.add(called)
                     message = f"this is never reached: {called[1]} does not return"
-                    where = head(context.source, following)
+                    where = context.head(following)
                     self._suspect("unreachable", where, message, "", (fact,))
 
 

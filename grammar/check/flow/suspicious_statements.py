@@ -45,14 +45,12 @@ def _counters(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
             name, place = statement.target.name, statement.target.name
         else:
             continue
-        around = placed.inside
-        while around is not None:
+        for around in placed.around:
             if type(around.statement) is ast.For and around.statement.counter.key == name.key:
-                line = context.source.place(around.statement.span[0])[0]
+                line = context.line(around.statement)
                 message = f"{name.text} counts the loop of line {line} and is changed inside it"
                 yield context.finding("counter-changed", place, message)
                 break
-            around = around.inside
 
 
 def _to_itself(context: Context, node: ast.Assignment) -> Iterator[Diagnostic]:

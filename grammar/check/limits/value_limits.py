@@ -138,7 +138,7 @@ def _before_ptp(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
             waiting.append(statement)
         elif isinstance(statement, ast.Motion):
             if statement.kind in WITHOUT_PATH:
-                line = context.source.place(statement.span[0])[0]
+                line = context.line(statement)
                 for trigger in waiting:
                     message = f"PATH before {statement.kind} on line {line}"
                     yield context.finding("path-before-ptp", trigger, message)

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from grammar.check.analysis.context import Context, RoutineBody
-from grammar.check.analysis.statement_heads import head
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.motion_kinds import SPLINE_MOTIONS
 from grammar.syntax import ast
@@ -49,7 +48,7 @@ def _declarations(context: Context, routine: RoutineBody) -> Iterator[Diagnostic
                 "declarations come before instructions, and not inside a block",
             )
         elif first is not None:
-            line = context.source.place(first.span[0])[0]
+            line = context.line(first)
             message = f"declarations come before instructions, and line {line} is an instruction"
             yield context.finding("misplaced-declaration", statement, message)
 
@@ -68,7 +67,7 @@ def _in_submit(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
                 yield context.finding("motion-in-submit", statement, message)
             case ast.SplineBlock(keyword=keyword):
                 message = f"{keyword} in a submit program"
-                yield context.finding("motion-in-submit", head(context.source, statement), message)
+                yield context.finding("motion-in-submit", context.head(statement), message)
             case ast.EmilyMotion():
                 yield context.finding("motion-in-submit", statement, "MOVE_EMI in a submit program")
             case ast.Assignment(target=ast.Subscript(base=ast.Variable(name=name)) as target) if (
@@ -114,9 +113,8 @@ def _interrupt_routines(context: Context) -> Mapping[str, ast.InterruptDeclarati
 def _in_interrupt(
     context: Context, routine: RoutineBody, declaration: ast.InterruptDeclaration
 ) -> Iterator[Diagnostic]:
-    source, name = context.source, routine.node.name.text
-    line = source.place(declaration.span[0])[0]
-    reason = f"the interrupt of line {line} calls {name}"
+    line = context.line(declaration)
+    reason = f"the interrupt of line {line} calls {routine.node.name.text}"
     for placed in routine.statements:
         statement = placed.statement
         if placed.is_in_spline:
@@ -125,7 +123,7 @@ def _in_interrupt(
         if slug:
             rules = ("TRG-09", "MSG-09") if isinstance(statement, ast.Trigger) else None
             yield context.finding(
-                slug, head(source, statement), message, reason=reason, rules=rules
+                slug, context.head(statement), message, reason=reason, rules=rules
             )
 
 

@@ -145,7 +145,7 @@ class _Routine:
                 value = constant(self.context, label)
                 first = seen.setdefault((type(value), value), label)
                 if value is not None and first is not label:
-                    line = self.context.source.place(first.span[0])[0]
+                    line = self.context.line(first)
                     message = f"the CASE of line {line} has this constant, so this one never runs"
                     self.checker.report("case-twice", label, message)
 
