@@ -152,7 +152,7 @@ class MachineData:
     dh_4: WristLink = _NO_LINK
     dh_5: WristLink = _NO_LINK
     tflwp: Pose = IDENTITY
-    singul_pos: tuple[int, int, int] = (0, 0, 0)
+    singul_pos: tuple[int, ...] = (0, 0, 0)
     velocity: CartesianLimits = DEFAULT_VELOCITY
     acceleration: CartesianLimits = DEFAULT_ACCELERATION
     t1_speed: float = T1_SPEED

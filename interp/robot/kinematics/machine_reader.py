@@ -105,7 +105,7 @@ class _Reader:
             dh_4=self._link("$DH_4", 90.0),
             dh_5=self._link("$DH_5", -90.0),
             tflwp=self._frame("$TFLWP"),
-            singul_pos=(self._singular(1), self._singular(2), self._singular(3)),
+            singul_pos=tuple(self._integer(f"$SINGUL_POS[{i}]", default=0) for i in _numbers(3)),
             velocity=self._cartesian("$VEL_MA", DEFAULT_VELOCITY),
             acceleration=self._cartesian("$ACC_MA", DEFAULT_ACCELERATION),
             t1_speed=self._number("$VEL_CP_T1", default=T1_SPEED),
@@ -218,9 +218,6 @@ class _Reader:
             run_up = RUN_UP_TIME
         filtered = self._number("$DEF_FLT_PTP", default=0.0) / 1000.0
         return AxisDynamics.ramped(velocity, run_up, filtered or FILTER_TIME)
-
-    def _singular(self, number: int) -> int:
-        return self._integer(f"$SINGUL_POS[{number}]", default=0)
 
     def _link(self, name: str, alpha: float) -> WristLink:
         members = self._members(name, default={"DHART_ALPHA": alpha})

@@ -10,7 +10,7 @@ from functools import lru_cache
 import ruckig
 
 from interp.robot.path.speed_profile import SpeedProfile, joined, profile_of, steady
-from interp.robot.planning.ramps import Bounds, at_most, bisected, ramp, speed_after
+from interp.robot.planning.ramps import Bounds, at_most, ramp, speed_after
 
 _SLACK = 1e-7
 """Relative difference within which a change of speed fills a length."""
@@ -42,7 +42,7 @@ def travel(
     found = _solved(length, speed, acceleration, target, bounds, final)
     misses = found is None or abs(found.length - length) > _EXACT * length
     if found is None or misses or found.lowest < -_SLACK * bounds.velocity:
-        found = _searched(length, speed, acceleration, target, bounds, final)
+        found = _unhurried(length, speed, acceleration, target, bounds, final)
     return found.stretched(length)
 
 
@@ -83,23 +83,18 @@ def _solved(
     return profile_of(speed, ((t, a * unit, jerk * unit) for t, a, jerk in pieces))
 
 
-def _searched(
+def _unhurried(
     length: float, speed: float, acceleration: float, target: float, bounds: Bounds, final: float
 ) -> SpeedProfile:
-    """Return the profile by a search for the cruise speed, if rounding makes Ruckig fail."""
+    """Return a profile that goes to its highest speed first, as far as the length allows that.
 
-    def parts(cruise: float) -> tuple[SpeedProfile, SpeedProfile]:
-        return (ramp(speed, acceleration, cruise, bounds), ramp(cruise, 0.0, target, bounds, final))
-
-    def fits(cruise: float) -> bool:
-        return sum(part.length for part in parts(cruise)) <= length
-
-    eased = speed_after(speed, acceleration, 0.0, bounds.jerk)
-    low = max(eased, speed_after(target, final, 0.0, -bounds.jerk))
-    if fits(low):
-        low = bisected(fits, low, max(bounds.velocity, low))
-        up, down = parts(low)
-        return joined((up, steady(low, length - up.length - down.length), down))
-    # It brakes already, and all that is left over is travelled behind that.
+    Ruckig has none where the override has dropped and the speed is above its bound.
+    """
+    fastest = bounds.velocity
+    before = ramp(speed, acceleration, fastest, bounds)
+    behind = ramp(fastest, 0.0, target, bounds, final)
+    left = length - before.length - behind.length
+    if left >= 0.0:
+        return joined((before, steady(fastest, left), behind))
     direct = ramp(speed, acceleration, target, bounds, final)
     return joined((direct, steady(target, length - direct.length)))

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 from interp.robot.path.speed_profile import SpeedProfile
@@ -19,11 +18,12 @@ from interp.robot.planning.spans import RATIOS, Span, spans_of
 
 _HELD = 0.8
 """Share of its constant speed below which a blend counts as slowed down by its neighbours."""
-_STANDS = 1e-3
-"""Speed in mm/s or deg/s at the end that counts as standstill."""
 _TOLERANCE = 1e-6
 """Relative difference by which a speed may exceed the allowed one."""
 
+#: The speed at the end of each span, and the length on which speeds exceed what is allowed, as they
+#: do after the override was reduced, while the arm is still braking.
+_Speeds = tuple[list[float], float]
 #: The length at excessive speed, the duration in seconds, spans, and a profile for each stretch.
 _Candidate = tuple[float, float, Sequence[Span], list[SpeedProfile]]
 
@@ -110,17 +110,6 @@ def _braked(spans: Sequence[Span], speed: float, is_strict: bool) -> list[SpeedP
 # -------------------------------------------------------------------------------- both passes
 
 
-@dataclass(frozen=True, slots=True)
-class _Speeds:
-    """The speed at the end of each span, and the length on which speeds exceed what is allowed.
-
-    They exceed it after the override was reduced, while the arm is still braking.
-    """
-
-    ends: list[float]
-    over: float
-
-
 def _allowed(spans: Sequence[Span]) -> list[float]:
     """Return the largest speed at the end of each span from which the arm can still brake."""
     allowed = [0.0]
@@ -145,13 +134,13 @@ def _speeds(spans: Sequence[Span], start: float, is_strict: bool) -> _Speeds | N
             over += span.length
         ends.append(found)
         speed = found
-    return _Speeds(ends, over) if speed <= _STANDS else None
+    return (ends, over) if at_most(speed, 0.0) else None
 
 
 def _settled(spans: Sequence[Span], start: float, is_strict: bool) -> _Speeds | None:
     """Return speeds at which no blend is entered too fast for the changes of speed inside it."""
     found = _speeds(spans, start, is_strict)
-    while found is not None and found.over and _slow(spans, found.ends):
+    while found is not None and found[1] and _slow(spans, found[0]):
         found = _speeds(spans, start, is_strict)
     return found
 
@@ -163,9 +152,10 @@ def _travelled(spans: Sequence[Span], start: float, found: _Speeds | None) -> li
     """Return how spans are travelled at these speeds, if there are any."""
     if found is None:
         return []
-    steps = zip(spans, [start, *found.ends], found.ends, strict=False)
-    profiles = [profile for span, *ends in steps for profile in span.profiles(*ends)]
-    return [(found.over, sum(profile.duration for profile in profiles), spans, profiles)]
+    ends, over = found
+    steps = zip(spans, [start, *ends], ends, strict=False)
+    profiles = [profile for span, *speeds in steps for profile in span.profiles(*speeds)]
+    return [(over, sum(profile.duration for profile in profiles), spans, profiles)]
 
 
 def _ease(spans: Sequence[Span], found: _Speeds | None) -> bool:
@@ -174,10 +164,13 @@ def _ease(spans: Sequence[Span], found: _Speeds | None) -> bool:
     If speeds exceed what is allowed, this applies to all blends, since braking may end within a
     blend.
     """
-    constant = [place for place, span in enumerate(spans) if span.is_constant]
-    if found is not None and not found.over:
-        constant = [n for n in constant if found.ends[n] < _HELD * spans[n].constant.velocity]
-    slowed = [spans[place] for place in constant]
+    ends, over = found or ([], 0.0)
+    slowed = [
+        span
+        for place, span in enumerate(spans)
+        if span.is_constant
+        and (found is None or over or ends[place] < _HELD * span.constant.velocity)
+    ]
     for span in slowed:
         span.is_constant = False
     return bool(slowed)

@@ -78,20 +78,12 @@ def links_of(machine: MachineData) -> tuple[Link, ...]:
     )
     first = len(links)
     bodies = _shapes(machine, mass) if machine.own_chain is None else _rods(machine, mass)
-    joints = zip(machine.chain.joints, _ROTORS, bodies, strict=False)
-    for place, (joint, rotor, shapes) in enumerate(joints):
-        links.append(
-            Link(
-                f"link_{place + 1}",
-                first + place - 1,
-                joint.frame,
-                place,
-                joint.axis,
-                joint.is_linear,
-                rotor * inertia,
-                shapes,
-            )
-        )
+    for place, (joint, rotor, shapes) in enumerate(
+        zip(machine.chain.joints, _ROTORS, bodies, strict=False)
+    ):
+        name, parent, drive = f"link_{place + 1}", first + place - 1, rotor * inertia
+        axis = place, joint.axis, joint.is_linear
+        links.append(Link(name, parent, joint.frame, *axis, drive, shapes))
     return (*links, *_externals(machine, scale))
 
 
@@ -117,11 +109,10 @@ _ROTORS = (0.012, 0.012, 0.008, 0.001, 0.001, 0.0006)
 
 
 def _foot(machine: MachineData, mass: float) -> tuple[Capsule, ...]:
+    top, radius = _scaled(machine.tiroro.position, 0.5), 0.105
     if machine.own_chain is not None:
-        top = machine.own_chain.joints[0].frame.position
-        return (Capsule(_ORIGIN, top, 0.1 * reach_of(machine), 0.22 * mass, DARK),)
-    middle = _scaled(machine.tiroro.position, 0.5)
-    return (Capsule(_ORIGIN, middle, 0.105 * reach_of(machine), 0.22 * mass, DARK),)
+        top, radius = machine.own_chain.joints[0].frame.position, 0.1
+    return (Capsule(_ORIGIN, top, radius * reach_of(machine), 0.22 * mass, DARK),)
 
 
 def _shapes(machine: MachineData, mass: float) -> tuple[tuple[Capsule, ...], ...]:

@@ -110,22 +110,15 @@ def _completed(spec: Any, joints: tuple[str, ...]) -> Any:
 
 def _arm_joints(model: Any, path: Path) -> list[int]:
     """Return the joints of the arm, from the base outwards."""
-    moved = {body: _joints_of(model, body) for body in range(model.nbody)}
-    beyond = [
-        sum(len(moved[other]) for other in _below(model, body)) for body in range(model.nbody)
-    ]
+    moved = [_joints_of(model, body) for body in range(model.nbody)]
+    beyond = [sum(len(moved[b]) for b in _below(model, body)) for body in range(model.nbody)]
     body, found = 0, [*moved[0]]
-    while True:
-        children = [
-            c for c in range(1, model.nbody) if model.body_parentid[c] == body and c != body
-        ]
-        going_on = [child for child in children if beyond[child]]
-        if len(going_on) != 1:
-            if not found and going_on:
-                going_on = [max(going_on, key=lambda child: beyond[child])]
-            else:
-                break
-        body = going_on[0]
+    while going_on := [
+        c for c in range(1, model.nbody) if model.body_parentid[c] == body and beyond[c]
+    ]:
+        if len(going_on) > 1 and found:
+            break
+        body = max(going_on, key=lambda child: beyond[child])
         found += moved[body]
     if not found:
         raise RobotFileError(f"{path}: no joint moves anything")
