@@ -184,10 +184,9 @@ class CentralWrist(Kinematics):
         The sense is 1 if axis 4 points along the forearm, -1 if against it. The zero position is
         the angle of the first wrist axis about axis 4 in radians.
         """
-        upright = _about_y(np.array(-math.pi / 2)) @ self._frames[3, :3, :3]
-        along = math.copysign(1.0, float(upright[2, 2]))
-        turned = np.diag([along, 1.0, along]) @ upright
-        return along, math.atan2(turned[1, 0], turned[0, 0])
+        ahead, aside, up = self.machine.tx3p3.rows
+        along = math.copysign(1.0, ahead[2])
+        return along, math.atan2(aside[0], -along * up[0])
 
 
 def _about_y(radians: Array) -> Array:

@@ -44,7 +44,7 @@ class ArcLength:
             slope = np.linalg.norm(self._tangents(u), axis=1)
             step = np.divide(missing, slope, out=np.zeros_like(u), where=slope > 0.0)
             before, u = u, np.clip(u + step, low, high)
-            if np.abs(u - before).max(initial=0.0) < _EXACT:
+            if np.abs(u - before).max() < _EXACT:
                 break
         return u
 

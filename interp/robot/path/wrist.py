@@ -64,7 +64,7 @@ class WristCurve(PosePathCurve):
         for _ in range(_ROUNDS):
             here, *beside = self._tool_at(axes + shifts[:, None])
             missing = wanted - here
-            if np.abs(missing).max(initial=0.0) < _EXACT:
+            if np.abs(missing).max() < _EXACT:
                 break
             slopes = np.moveaxis(np.array(beside) - here, 0, -1) / _STEP
             try:
@@ -72,7 +72,7 @@ class WristCurve(PosePathCurve):
             except np.linalg.LinAlgError:
                 break
             axes[:, :_MAIN] += np.clip(step, -_LONGEST, _LONGEST)
-        if np.abs(missing).max(initial=0.0) > _CLOSE:
+        if np.abs(missing).max() > _CLOSE:
             raise Fault("unreachable", "the path cannot be followed", number=1366)
         return axes
 

@@ -216,7 +216,7 @@ class _Corner:
                 curve.tool_path.tangents(np.zeros(1)) for curve in self.common
             )
             lengths = float(np.linalg.norm(leaving) * np.linalg.norm(joining))
-            keeps_speed = lengths > 0.0
+            keeps_speed = bool(lengths)
             if keeps_speed:  # rounding may take it beyond 1
                 cosine = min(max(float(leaving @ joining) / lengths, _BACK), 1.0)
         choices: list[Transition] = [
