@@ -6,7 +6,8 @@ Every loop is bounded, by its limits or by its own counter. As in `statements`, 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import wraps
 from typing import Final
 
 from grammar.generation.expressions import count, expression, operand, read, text, truth
@@ -171,12 +172,22 @@ def _counted(code: RoutineWriter) -> tuple[str, int] | None:
     return name, times
 
 
-def loop_while(code: RoutineWriter) -> bool:
+def _with_counter(
+    write: Callable[[RoutineWriter, str, int], bool],
+) -> Callable[[RoutineWriter], bool]:
+    """Return a function that writes nothing if there is no counter; see `_counted`."""
+
+    @wraps(write)
+    def written(code: RoutineWriter) -> bool:
+        found = _counted(code)
+        return found is not None and write(code, *found)
+
+    return written
+
+
+@_with_counter
+def loop_while(code: RoutineWriter, name: str, times: int) -> bool:
     """Write a WHILE [CTL-01]."""
-    found = _counted(code)
-    if found is None:
-        return False
-    name, times = found
     with code.repeated(times + 1):
         code.spend()
         condition = _both(code, code.choices.pick((f"{name}<{times}", f"{name}<>{times}")), "AND")
@@ -187,12 +198,9 @@ def loop_while(code: RoutineWriter) -> bool:
     return True
 
 
-def loop_repeat(code: RoutineWriter) -> bool:
+@_with_counter
+def loop_repeat(code: RoutineWriter, name: str, times: int) -> bool:
     """Write a REPEAT [CTL-01]."""
-    found = _counted(code)
-    if found is None:
-        return False
-    name, times = found
     code.line("REPEAT")
     with code.repeated(times):
         with code.indented():
@@ -204,12 +212,9 @@ def loop_repeat(code: RoutineWriter) -> bool:
     return code.line(f"UNTIL {condition}")
 
 
-def loop(code: RoutineWriter) -> bool:
+@_with_counter
+def loop(code: RoutineWriter, name: str, times: int) -> bool:
     """Write a LOOP that is left by EXIT [CTL-01, CTL-02]."""
-    found = _counted(code)
-    if found is None:
-        return False
-    name, times = found
     with code.block("LOOP", "ENDLOOP"), code.repeated(times):
         code.spend(4)
         _count(code, name, times)
@@ -261,12 +266,9 @@ def _forward_jump(code: RoutineWriter) -> None:
     code.line(f"{label}:")
 
 
-def backward_jump(code: RoutineWriter) -> bool:
+@_with_counter
+def backward_jump(code: RoutineWriter, name: str, times: int) -> bool:
     """Write a GOTO to an earlier label, bounded by a counter."""
-    found = _counted(code)
-    if found is None:
-        return False
-    name, times = found
     label = code.names.new("L")
     code.line(f"{label}:")
     with code.repeated(times, is_loop=False):

@@ -57,8 +57,11 @@ def write_conformance_page(record: Mapping[str, Any], folder: Path) -> Path:
         "runs": [_run(one) for one in records(record, "history")[-_MAX_RUNS:]],
     }
     room = _MAX_DATA_CHARACTERS - len(embedded_json(shared)) - len(cases)
-    listed = _listed(cases, _always, room) or _listed(cases, _is_not_fine, room)
-    listed = listed or _listed(cases, _never, math.inf)
+    listed = (
+        _listed(cases, lambda _case: True, room)
+        or _listed(cases, lambda case: text(case, "verdict") != "pass", room)
+        or _listed(cases, lambda _case: False, math.inf)
+    )
     page = render(
         "conform.html.j2",
         script=joined(_SCRIPTS),
@@ -78,18 +81,6 @@ def _listed(cases: list[Record], has_details: Callable[[Record], bool], room: fl
         if room < 0:
             return []
     return listed
-
-
-def _always(_case: Record) -> bool:
-    return True
-
-
-def _is_not_fine(case: Record) -> bool:
-    return text(case, "verdict") != "pass"
-
-
-def _never(_case: Record) -> bool:
-    return False
 
 
 def _case(case: Record, *, has_details: bool) -> Json:

@@ -161,13 +161,10 @@ def _print_origin(console: Console, done: "SurveyedOrigin") -> None:
     damage = f" ({done.origin.damage})" if done.origin.damage else ""
     say(done.origin.name + damage)
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
-    table.add_column("program")
-    table.add_column("ran")
-    table.add_column("virtual s", justify="right")
-    table.add_column("motions", justify="right")
-    table.add_column("skipped", justify="right")
-    table.add_column("stand-ins", justify="right")
-    table.add_column("inputs", justify="right")
+    for heading in ("program", "ran"):
+        table.add_column(heading)
+    for heading in ("virtual s", "motions", "skipped", "stand-ins", "inputs"):
+        table.add_column(heading, justify="right")
     table.add_column("where and why", overflow="fold")
     for row in done.rows:
         where = "" if row["result"] == "end" else f"{row['at'].rpartition('/')[2]} "
