@@ -127,18 +127,15 @@ class Ask:
     pushed; a larger one is stored through the reference on top of the inputs.
     """
 
-    request: str
-    parts: tuple[Argument, ...]
-    result: int | None
-
-
-@dataclass(frozen=True, slots=True)
-class Builtin:
-    """A call of a predefined function, otherwise like `Ask`."""
-
     name: str
     parts: tuple[Argument, ...]
     result: int | None
+
+
+class Builtin(Ask):
+    """A call of a predefined function, otherwise like a request."""
+
+    __slots__ = ()
 
 
 def printable(text: str) -> str:

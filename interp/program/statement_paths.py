@@ -19,15 +19,20 @@ def routine_at(program: CheckedProgram, file: str, name: str) -> Routine | None:
 def statement_lines(routine: Routine) -> set[int]:
     """Return the lines in which statements of a routine begin, UNTIL conditions included."""
     found: set[int] = set()
-    todo = [routine.node.body]
-    while todo:
-        for statement in todo.pop():
-            if not isinstance(statement, ast.Definition | ast.Label):
-                found.add(routine.unit.line(statement))
-                todo += _bodies(statement)
-            if isinstance(statement, ast.Repeat):
-                found.add(routine.unit.line(statement.condition))
+    for statement in statements(routine.node.body):
+        if not isinstance(statement, ast.Definition | ast.Label):
+            found.add(routine.unit.line(statement))
+        if isinstance(statement, ast.Repeat):
+            found.add(routine.unit.line(statement.condition))
     return found
+
+
+def statements(body: Sequence[ast.Statement]) -> Iterator[ast.Statement]:
+    """Yield all statements of a body, including those in blocks."""
+    for statement in body:
+        yield statement
+        for inner in _bodies(statement):
+            yield from statements(inner)
 
 
 def way_to(routine: Routine, line: int) -> tuple[ast.Statement, ...]:

@@ -6,15 +6,14 @@ branches: its body was entered, and it was passed without entering the body.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final, TypedDict
 
 from grammar.syntax import ast
-from grammar.syntax.walk import bodies
 from interp.controller.state.trace import TraceEvent
 from interp.program.load import CheckedProgram, Unit
-from interp.program.statement_paths import statement_lines
+from interp.program.statement_paths import statement_lines, statements
 from interp.standins.uses import FOLDER
 
 _ENTERED: Final = "entered"
@@ -159,7 +158,7 @@ def _statements(program: CheckedProgram, unit: Unit) -> _Statements:
         lines |= own
         if own:
             routines[routine.name] = min(own)
-        for node in _blocks(routine.node.body):
+        for node in statements(routine.node.body):
             line = unit.line(node)
             match node:
                 case ast.If():
@@ -182,12 +181,3 @@ def _is_passed_through(node: ast.For) -> bool:
     if not isinstance(first, ast.IntegerLiteral) or not isinstance(last, ast.IntegerLiteral):
         return False
     return node.step is None and first.value <= last.value
-
-
-def _blocks(body: Sequence[ast.Statement]) -> Iterator[ast.Statement]:
-    """Yield all statements of a body, including those in blocks."""
-    for statement in body:
-        yield statement
-        if not isinstance(statement, ast.SplineBlock):
-            for inner in bodies(statement):
-                yield from _blocks(inner)

@@ -24,6 +24,7 @@ from interp.bytecode.instruction_set.table import FORMAT, shape
 from interp.bytecode.program import (
     BASIC_TYPES,
     Argument,
+    Ask,
     Changed,
     Choice,
     Code,
@@ -70,12 +71,10 @@ class _Writer:
         texts = (f"text T{n} {string_text(text)}" for n, text in enumerate(program.texts))
         yield from self._section(texts)
         yield from self._section(
-            f"builtin B{number} {self._entry(one.name, one.parts, one.result)}"
-            for number, one in enumerate(program.builtins)
+            f"builtin B{number} {self._entry(one)}" for number, one in enumerate(program.builtins)
         )
         yield from self._section(
-            f"ask A{number} {self._entry(one.request, one.parts, one.result)}"
-            for number, one in enumerate(program.asks)
+            f"ask A{number} {self._entry(one)}" for number, one in enumerate(program.asks)
         )
         yield from self._section(self._data_lines())
         for number, code in enumerate(program.codes):
@@ -113,10 +112,10 @@ class _Writer:
 
     # --------------------------------------------------------------------------- requests
 
-    def _entry(self, name: str, parts: Sequence[Argument], result: int | None) -> str:
-        words = [name_text(name), *map(self._part, parts)]
-        if result is not None:
-            words += ["->", self._type(result)]
+    def _entry(self, entry: Ask) -> str:
+        words = [name_text(entry.name), *map(self._part, entry.parts)]
+        if entry.result is not None:
+            words += ["->", self._type(entry.result)]
         return " ".join(words)
 
     def _part(self, part: Argument) -> str:
@@ -208,11 +207,9 @@ class _Writer:
         program, operands = self._program, instruction.operands
         match instruction.op:
             case Op.ASK:
-                ask = program.asks[operands[0]]
-                return self._entry(ask.request, ask.parts, ask.result)
+                return self._entry(program.asks[operands[0]])
             case Op.BUILTIN:
-                builtin = program.builtins[operands[0]]
-                return self._entry(builtin.name, builtin.parts, builtin.result)
+                return self._entry(program.builtins[operands[0]])
             case Op.SET_TEXT:
                 return string_text(program.texts[operands[0]])
         return ""

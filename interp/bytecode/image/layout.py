@@ -219,7 +219,7 @@ TABLES: Mapping[str, Codec] = {
     for name, item in {
         "TYPE": Codec(_read_type, _write_type),
         "TEXT": STRING,
-        "ASKS": record(Ask, request=STRING, result=OPTIONAL, parts=_LIST),
+        "ASKS": record(Ask, name=STRING, result=OPTIONAL, parts=_LIST),
         "BLTN": record(Builtin, name=STRING, result=OPTIONAL, parts=_LIST),
         "DATA": record(
             Data, module=STRING, name=STRING, type=WORD, is_global=one_of((False, True))

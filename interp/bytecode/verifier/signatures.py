@@ -15,6 +15,7 @@ from grammar.semantics.assignability import assignable
 from grammar.semantics.types import BOOL, CHAR, INT, REAL, Array, Text, Type, is_same
 from interp.bytecode.program import (
     Argument,
+    Ask,
     Builtin,
     Changed,
     Choice,
@@ -78,11 +79,11 @@ _SPLINE_ITEMS: Mapping[str, tuple[tuple[str, ...], bool]] = {
 }
 
 
-def request_mismatch(program: Program, request: str, parts: Sequence[Argument]) -> str | None:
+def request_mismatch(program: Program, ask: Ask) -> str | None:
     """Return why the parts do not fit the request, or ``None`` if they do."""
-    if request not in _REQUESTS:
-        return f"{request} is not a request"
-    return _Fit(program).fields(_REQUESTS[request], parts)
+    if ask.name not in _REQUESTS:
+        return f"{ask.name} is not a request"
+    return _Fit(program).fields(_REQUESTS[ask.name], ask.parts)
 
 
 @dataclass(frozen=True, slots=True)

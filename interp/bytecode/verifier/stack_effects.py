@@ -45,7 +45,6 @@ from interp.bytecode.instruction_set.table import Shape, instructions
 from interp.bytecode.program import (
     Argument,
     Ask,
-    Builtin,
     Code,
     CodeKind,
     Handle,
@@ -288,7 +287,7 @@ class StackEffects:
         """Push the result of a predefined function, if it fits into one cell."""
         self._push_entry(self._program.builtins[number])
 
-    def _take_entry(self, entry: Ask | Builtin, missing: Sequence[bool] = ()) -> None:
+    def _take_entry(self, entry: Ask, missing: Sequence[bool] = ()) -> None:
         if entry.result is not None and not isinstance(self._types[entry.result], Plain):
             self.take(reference_to(entry.result))
         inputs = list(inputs_of(entry.parts))
@@ -297,7 +296,7 @@ class StackEffects:
             if (replace(item, is_missing=False) if is_text else item) != item_of(given):
                 raise Refused("an input has the wrong type")
 
-    def _push_entry(self, entry: Ask | Builtin) -> None:
+    def _push_entry(self, entry: Ask) -> None:
         if entry.result is not None and isinstance(self._types[entry.result], Plain):
             self.push(value_of(entry.result))
 

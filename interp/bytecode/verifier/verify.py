@@ -29,6 +29,7 @@ from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from graphlib import CycleError, TopologicalSorter
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.image.image import write_image
@@ -139,28 +140,13 @@ def _check_start(code: Code) -> None:
 
 
 def _check_cycles(code: Code, stacks: Sequence[Stack | None]) -> None:
-    """Check that every cycle contains a LINE or an ASK.
-
-    Depth-first search over the graph without the edges that leave those instructions.
-    """
-    done, open_ = 2, 1
-    colour = [0] * len(code.instructions)
-    for start, stack in enumerate(stacks):
-        if stack is None or colour[start]:
-            continue
-        colour[start] = open_
-        todo = [(start, _uncounted(code, start))]
-        while todo:
-            place, rest = todo[-1]
-            after = next(rest, None)
-            if after is None:
-                colour[place] = done
-                todo.pop()
-            elif colour[after] == open_:
-                raise error_at(code, place, "a cycle without a LINE or an ASK")
-            elif not colour[after]:
-                colour[after] = open_
-                todo.append((after, _uncounted(code, after)))
+    """Check that every cycle contains a LINE or an ASK."""
+    reached = (place for place, stack in enumerate(stacks) if stack is not None)
+    try:
+        TopologicalSorter({place: _uncounted(code, place) for place in reached}).prepare()
+    except CycleError as error:
+        place = max(error.args[1])
+        raise error_at(code, place, "a cycle without a LINE or an ASK") from None
 
 
 def _uncounted(code: Code, place: int) -> Iterator[int]:

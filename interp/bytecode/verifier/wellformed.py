@@ -8,7 +8,8 @@ each on its own. What instructions do to the stack is checked by
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar
 
 from grammar.semantics.types import (
     BOOL,
@@ -25,6 +26,7 @@ from interp.bytecode.instruction_set.table import MAX_CELLS, OPERAND_KINDS, shap
 from interp.bytecode.program import (
     BASIC_TYPES,
     Argument,
+    Ask,
     Changed,
     Choice,
     Code,
@@ -47,6 +49,9 @@ from interp.values.values import single
 _MOST_DIMENSIONS = 3
 #: The maximum nesting of types and of parts of requests.
 _DEEPEST = 64
+
+
+_Entry = TypeVar("_Entry", bound=Ask)
 
 
 class VerificationError(Exception):
@@ -85,16 +90,10 @@ class _Tables:
         for code in self._program.codes:
             self._head(code)
         for ask in self._program.asks:
-            self._entry(ask.request, ask.parts, ask.result, ask.request == "Invoke")
-            reason = request_mismatch(self._program, ask.request, ask.parts)
-            if reason is not None:
-                raise VerificationError(f"request {ask.request}: {reason}")
-            self._result(ask.request, ask.result)
+            self._entry(ask, "request", request_mismatch, may_change=ask.name == "Invoke")
+            self._result(ask.name, ask.result)
         for builtin in self._program.builtins:
-            self._entry(builtin.name, builtin.parts, builtin.result, True)
-            reason = call_mismatch(self._program, builtin)
-            if reason is not None:
-                raise VerificationError(f"function {builtin.name}: {reason}")
+            self._entry(builtin, "function", call_mismatch, may_change=True)
         for code in self._program.codes:
             self._operands(code)
 
@@ -149,9 +148,15 @@ class _Tables:
     # --------------------------------------------------------------------------- requests
 
     def _entry(
-        self, name: str, parts: Sequence[Argument], result: int | None, may_change: bool
+        self,
+        entry: _Entry,
+        what: str,
+        mismatch: Callable[[Program, _Entry], str | None],
+        *,
+        may_change: bool,
     ) -> None:
-        for part in _all_parts(parts, 0):
+        name = entry.name
+        for part in _all_parts(entry.parts, 0):
             match part:
                 case Input():
                     self._input(part, name)
@@ -165,8 +170,11 @@ class _Tables:
                     raise VerificationError(f"{name}: there is no such line")
                 case Handle() if not 0 <= part.code < len(self._program.codes):
                     raise VerificationError(f"{name}: there is no such code object")
-        if result is not None:
-            self._type(result, name)
+        if entry.result is not None:
+            self._type(entry.result, name)
+        reason = mismatch(self._program, entry)
+        if reason is not None:
+            raise VerificationError(f"{what} {name}: {reason}")
 
     def _input(self, part: Input, name: str) -> None:
         self._handed_over(part, name)

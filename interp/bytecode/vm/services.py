@@ -147,14 +147,14 @@ class Services:
     def ask(self, number: int, after: Operation) -> Operation:
         """Return the operation of an `ASK` instruction; in a condition, the reader answers it."""
         ask, state = self._program.asks[number], self._state
-        if ask.request == "StopAdvance":
+        if ask.name == "StopAdvance":
             return self._stop_advance(after)
-        is_invoked = ask.request == "Invoke"
+        is_invoked = ask.name == "Invoke"
         arguments = arguments_of(ask.parts) if is_invoked else ()
         entry = Entry(self._program, state, ask.parts, arguments, ask.result)
         make = self._makers.parts(ask.parts)
         make_paths = self._makers.paths(arguments)
-        kind: Any = getattr(requests, ask.request)
+        kind: Any = getattr(requests, ask.name)
 
         def operation() -> Operation | None:
             block = entry.take()
@@ -172,7 +172,7 @@ class Services:
                 return after
 
             if state.reader is not None:
-                if ask.request != "Read":
+                if ask.name != "Read":
                     raise LinkError(NOT_IN_CONDITIONS)
                 return completion(state.reader(request.path))
             state.request, state.completion = _finished(request), completion

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
+from grammar.semantics.predefined import System
 from interp.controller.inputs.channels import COMMANDS, Channels
 from interp.controller.motion.motion_queue import MotionQueue
 from interp.controller.state.signals import Signals
@@ -16,7 +17,7 @@ from interp.controller.state.variables import Computed
 from interp.port.requests import Path, Value
 from interp.robot.api.control_core import ControlCore
 from interp.values.predefined_values import empty_structure, word
-from interp.values.values import single
+from interp.values.values import single, zero
 
 
 def connect_computed(
@@ -25,7 +26,7 @@ def connect_computed(
     """Connect the computed variables; `motion.positions` connects those of positions."""
     arm, clock, profile, states = core.arm, state.clock, state.profile, state.program_states
     computed: Mapping[str, Callable[[], Value]] = {
-        "$DATE": partial(_date, state),
+        "$DATE": lambda: date_members(profile.start, clock.now, empty_structure("DATE")),
         "$ROB_TIMER": lambda: clock.tick // 1000,
         "$PRO_STATE": partial(_program_state, state, "robot"),
         "$PRO_STATE1": partial(_program_state, state, "robot"),
@@ -42,7 +43,7 @@ def connect_computed(
         "$I_O_ACTCONF": lambda: state.mode == "EX",
         "$NUM_IN": lambda: profile.sizes["inputs"],
         "$NUM_OUT": lambda: profile.sizes["outputs"],
-        "$NULLFRAME": _null_frame,
+        "$NULLFRAME": lambda: zero(System.load().types["FRAME"]),
         "$T1": lambda: state.mode == "T1",
         "$T2": lambda: state.mode == "T2",
         "$AUT": lambda: state.mode == "AUT",
@@ -72,13 +73,3 @@ class _MainRunOutputs:
 
 def _program_state(state: ControllerState, task: TaskName) -> Value:
     return word("PRO_STATE", state.program_states[task])  # [SUB-08]
-
-
-def _date(state: ControllerState) -> Value:
-    return date_members(state.profile.start, state.clock.now, empty_structure("DATE"))
-
-
-def _null_frame() -> Value:
-    frame = empty_structure("FRAME")
-    frame.members = [0.0] * len(frame.members)
-    return frame
