@@ -167,6 +167,13 @@ class Writer:
             return None
         return self._code[-1]
 
+    def constant(self) -> int | None:
+        """Return the INT that the last instruction pushes, or ``None`` if it pushes none."""
+        last = self.last()
+        number = last.operands[0] if last is not None and last.op is Op.PUSH_INT else None
+        assert number is None or isinstance(number, int), "a constant"
+        return number
+
     def cut(self, place: int) -> None:
         """Remove all instructions from this place on."""
         del self._code[place:]

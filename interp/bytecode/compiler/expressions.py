@@ -154,13 +154,11 @@ class Expressions:
             raise self._emitter.fail("operand")
         if selection.primitive is None:
             return value
-        last = self._writer.last()
-        if node.operator == "-" and last is not None and last.op is Op.PUSH_INT:
-            number = last.operands[0]
-            assert isinstance(number, int), "a constant"
-            if number != INT_MIN:
-                last.operands = (-number,)
-                return value
+        number = self._writer.constant()
+        if node.operator == "-" and number not in (None, INT_MIN):
+            self._writer.drop_last()
+            self._emit(Op.PUSH_INT, -number)
+            return value
         for step in selection.conversions[0]:
             self._emit(Op[step.name.upper()])
         self._apply(selection.primitive)
@@ -233,13 +231,11 @@ class Expressions:
 
     def _apply(self, primitive: Primitive) -> None:
         """Emit a primitive; the addition of a constant has its own instruction."""
-        last = self._writer.last()
-        if last is not None and last.op is Op.PUSH_INT and primitive.name in _SIGNS:
-            number = last.operands[0]
-            assert isinstance(number, int), "a constant"
-            if number != INT_MIN:
-                last.op, last.operands = Op.ADD_CONSTANT, (_SIGNS[primitive.name] * number,)
-                return
+        number = self._writer.constant()
+        if primitive.name in _SIGNS and number not in (None, INT_MIN):
+            self._writer.drop_last()
+            self._emit(Op.ADD_CONSTANT, _SIGNS[primitive.name] * number)
+            return
         self._emit(Op[primitive.name.upper()])
 
     def _result(self, selection: Selection, operand: Scalar | Reference) -> Value:

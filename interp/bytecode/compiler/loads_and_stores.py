@@ -30,11 +30,11 @@ from interp.program.variables import is_complete, untyped_value
 from interp.values.values import single
 
 #: The instructions that convert a value of one type to another.
-_CONVERSIONS: dict[tuple[Type, Type], tuple[Op, ...]] = {
-    (INT, REAL): (Op.INT_TO_REAL,),
-    (REAL, INT): (Op.REAL_TO_INT,),
-    (CHAR, INT): (Op.CHAR_TO_INT,),
-    (INT, CHAR): (Op.INT_TO_CHAR,),
+_CONVERSIONS: dict[tuple[Type, Type], Op] = {
+    (INT, REAL): Op.INT_TO_REAL,
+    (REAL, INT): Op.REAL_TO_INT,
+    (CHAR, INT): Op.CHAR_TO_INT,
+    (INT, CHAR): Op.INT_TO_CHAR,
 }
 
 
@@ -195,16 +195,14 @@ class Memory:
             raise self._emitter.fail("inadmissible")
         if value.type == to:
             return
-        ways = _CONVERSIONS.get((value.type, to))
-        if ways is None:
+        op = _CONVERSIONS.get((value.type, to))
+        if op is None:
             raise self._emitter.fail("inadmissible")
-        last = self._writer.last()
-        if ways == (Op.INT_TO_REAL,) and last is not None and last.op is Op.PUSH_INT:
-            number = last.operands[0]
-            assert isinstance(number, int), "a constant"
-            last.op, last.operands = Op.PUSH_REAL, (bits_of(single(number)),)
-            return
-        for op in ways:
+        number = self._writer.constant()
+        if op is Op.INT_TO_REAL and number is not None:
+            self._writer.drop_last()
+            self._emit(Op.PUSH_REAL, bits_of(single(number)))
+        else:
             self._emit(op)
 
     # ----------------------------------------------------------------------- stores
