@@ -101,20 +101,13 @@ class Palletiser(CentralWrist):
 
     # ------------------------------------------------------------------------------- the geometry
 
-    def _unturned(self, axes: Array) -> Array:
-        """Return rotations ``(..., 3, 3)`` of the wrist relative to $TIRORO, axes 4 to 6 at 0."""
-        still = axes.copy()
-        still[..., 3:] = 0.0
-        flange = self._to_inner[:3, :3] @ self._frames_at(still)[-1][..., :3, :3]
-        found: Array = flange @ self._after.T
-        return found
-
     def _with_wrist(self, main: Array, poses: Array) -> Array:
         """Return axes ``(..., 6)`` for main axes ``(..., 3)`` and poses reachable with A4 at 0."""
         axes = np.zeros((*main.shape[:-1], 6))
         axes[..., :3] = main
         wanted = self._to_inner[:3, :3] @ poses[..., :3, :3] @ self._after.T
-        wrist = np.swapaxes(self._unturned(axes), -1, -2) @ wanted
+        unturned = self._to_inner[:3, :3] @ self._frames_at(axes)[-1][..., :3, :3] @ self._after.T
+        wrist = np.swapaxes(unturned, -1, -2) @ wanted
         a5 = np.arctan2(wrist[..., 0, 2], wrist[..., 2, 2])
         a6 = np.arctan2(wrist[..., 1, 0], wrist[..., 1, 1])
         axes[..., 4] = np.degrees(a5) * self._guides[0]

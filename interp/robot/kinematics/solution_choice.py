@@ -169,10 +169,22 @@ def follow(arm: Kinematics, flanges: npt.ArrayLike, start: Sequence[float]) -> A
     the previous one. Raises `Fault` as `solve` does, for the first sample out of reach, and as
     `check_path` does.
     """
-    solutions = arm.inverse(flanges)
-    path = _nearest_solutions(arm, solutions, np.asarray(start, dtype=np.float64))
-    check_path(arm.machine.axes, path)
-    return path
+    before = np.asarray(start, dtype=np.float64)
+    forearm, hand = arm.machine.axes[3].direction, arm.machine.axes[5].direction
+    path = []
+    for choices in arm.inverse(flanges):
+        straight = np.abs(choices[:, 4]) <= _ZERO  # axis 4 keeps its value
+        choices[straight, 5] += forearm * hand * (choices[straight, 3] - before[3])
+        choices[straight, 3] = before[3]
+        near = nearest_turns(choices, before)
+        distances = np.abs(near - before).max(axis=1)
+        if np.isnan(distances).all():
+            raise Fault("unreachable", "the path cannot be followed", number=1366)
+        before = near[int(np.nanargmin(distances))]
+        path.append(before)
+    followed = np.array(path).reshape(-1, 6)
+    check_path(arm.machine.axes, followed)
+    return followed
 
 
 # ------------------------------------------------------------------------------------- one target
@@ -270,27 +282,6 @@ def _settled_wrist(
     if settled is None:
         return found
     return replace(found, axes=settled, status=int(arm.status(settled)), turn=turn_of(settled))
-
-
-# ---------------------------------------------------------------------------------------- a path
-
-
-def _nearest_solutions(arm: Kinematics, solutions: Array, start: Array) -> Array:
-    """Return the path sample by sample; in a straight wrist, axis 4 keeps its value."""
-    path = np.empty((len(solutions), 6))
-    before = start
-    forearm, hand = arm.machine.axes[3].direction, arm.machine.axes[5].direction
-    for place, solution in enumerate(solutions):
-        choices = solution.copy()
-        straight = np.abs(choices[:, 4]) <= _ZERO
-        choices[straight, 5] += forearm * hand * (choices[straight, 3] - before[3])
-        choices[straight, 3] = before[3]
-        choices = nearest_turns(choices, before)
-        distances = np.abs(choices - before).max(axis=1)
-        if np.isnan(distances).all():
-            raise Fault("unreachable", "the path cannot be followed", number=1366)
-        before = path[place] = choices[int(np.nanargmin(distances))]
-    return path
 
 
 def _limit_fault(axis: Axis, value: float) -> Fault:

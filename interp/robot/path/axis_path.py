@@ -310,13 +310,9 @@ class PosePathCurve:
             if rough < _SMOOTH:
                 break
         if max(rough, np.abs(axes[0] - start).max()) > _ROUGH:
-            raise _singular()
+            text = "the path leads through a singularity, where an axis would have to jump"
+            raise Fault("axis_velocity", text, number=1102, rules=("MOT-08",))
         check_path(self.arm.machine.axes, axes)
         if np.abs(np.diff(axes[::_COARSE], n=4, axis=0)).max() < _NOISE:
             return grid[::_COARSE], axes[::_COARSE]
         return grid, axes
-
-
-def _singular() -> Fault:
-    text = "the path leads through a singularity, where an axis would have to jump"
-    return Fault("axis_velocity", text, number=1102, rules=("MOT-08",))

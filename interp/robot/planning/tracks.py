@@ -22,7 +22,7 @@ from interp.robot.path.axis_path import (
     PosePathCurve,
 )
 from interp.robot.path.circle import Circle, circle_through
-from interp.robot.path.orientation import Carried, Orientation, Turning, about, turning
+from interp.robot.path.orientation import Carried, Orientation, about, turning
 from interp.robot.path.pose_path import Line, OrientedPath
 from interp.robot.path.programmed_targets import Programmed
 from interp.robot.path.tool_path import tool_tangents
@@ -148,7 +148,8 @@ class Tracks:
         point = self._point(motion, motion.target, before)
         end = matrix_of(placement.in_path(Pose.of(*point)))
         line = Line(start[:3, 3], end[:3, 3])
-        pose_path = OrientedPath(line, _turning(motion.settings, start, end))
+        last = start if motion.settings.orientation == "#CONSTANT" else end  # [ORI-01]
+        pose_path = OrientedPath(line, turning(start[:3, :3], last[:3, :3]))
         return self._along(motion, before, pose_path, point)
 
     def _circle(self, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:
@@ -277,12 +278,6 @@ class Tracks:
             name = self.machine.every_axis[int(np.argmax(over))].name
             text = f"the path would move {name} faster than it can"
             raise Fault("axis_velocity", text, number=1102, rules=("MOT-08",))
-
-
-def _turning(settings: Settings, start: Array, end: Array) -> Turning:
-    """Return the orientation along a line; #CONSTANT keeps the one at the start [ORI-01]."""
-    first, last = (pose[:3, :3] for pose in (start, end))
-    return turning(first, first if settings.orientation == "#CONSTANT" else last)
 
 
 def _along_circle(settings: Settings, circle: Circle, start: Array, end: Array) -> Orientation:

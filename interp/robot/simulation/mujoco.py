@@ -47,7 +47,7 @@ class MujocoRobot:
     chunk = _CHUNK
 
     def __init__(self, cell: Cell) -> None:
-        _be_quiet()
+        mujoco.set_mju_user_warning(_forget)
         self._machine = cell.machine
         self._model = cell.model()
         self._data = mujoco.MjData(self._model)
@@ -153,10 +153,5 @@ class MujocoRobot:
         raise self._stopped
 
 
-def _be_quiet() -> None:
-    """Suppress the warnings that MuJoCo writes to a file in the working directory."""
-    mujoco.set_mju_user_warning(_forget)
-
-
 def _forget(_: str) -> None:
-    return
+    """Suppress a warning that MuJoCo would write to a file in the working directory."""
