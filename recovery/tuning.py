@@ -128,7 +128,7 @@ MOST_CHOICES = 3
 MOST_LINE_SHAPES = 6
 #: How general operands are written: from the narrowest rule on, so many. Measured: 51 clusters with
 #: 1.
-PHRASE_LEVELS = 3
+PHRASE_LEVELS = 4
 
 # -------------------------------------------------------------------------------- sites of edits
 # `recovery.proposals.site_finder` and `*_sites` beside it, `line_reading`.

@@ -96,11 +96,11 @@ class CandidateFinder:
     def _written(self, having: Mapping[int, EditSite], core: int) -> Iterator[RankedEdits]:
         """Yield the edits for a site; ``having`` are the numbers of the lines that have it."""
         sites = list(having.values())
-        yield from self._writer.for_lines(sites)
-        yield from self._writer.for_line(sites[0])
+        yield from self._writer.edits(sites)
+        yield from self._writer.edits(sites[:1])
         nearer = [site for number, site in having.items() if number < core]
         if 0 < len(nearer) < len(sites):
-            yield from self._writer.for_lines(nearer)
+            yield from self._writer.edits(nearer)
 
     def _ordered(self, found: _Found) -> list[Candidate]:
         """Return the edits as candidates; those of a rule that has many come later."""

@@ -30,17 +30,8 @@ class EditWriter:
         self._similarity = similarity
         self._profile = phraser.profile
 
-    def for_line(self, site: EditSite) -> Iterator[RankedEdits]:
-        """Yield the edits for the site of one line."""
-        if site.kind == "repetition":
-            yield self._repetition(site, site.words)
-            return
-        near = self._profile.near(site.rule)
-        for symbols in self._phraser.phrases(site.words, near):
-            yield from self._written(site, site.words, symbols)
-
-    def for_lines(self, sites: Sequence[EditSite]) -> Iterator[RankedEdits]:
-        """Yield the edits for the sites of several lines at the same place."""
+    def edits(self, sites: Sequence[EditSite]) -> Iterator[RankedEdits]:
+        """Yield the edits for the sites of one or several lines at the same place."""
         some = min(sites, key=lambda site: site.rank)
         if some.kind == "repetition":
             yield self._repetition(some, [word for site in sites for word in site.words])

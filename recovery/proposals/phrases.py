@@ -7,9 +7,8 @@ which is right, so all of them are proposed.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from functools import cached_property
-from itertools import islice, product
 
 from grammar.notation.model import Repeat, walk
 from recovery import tuning
@@ -167,55 +166,6 @@ class Phraser:
         plain = self._fitted(name, kinds) if name else None
         return tuple(dict.fromkeys((plain, *levels))) if plain else levels
 
-    def phrases(
-        self, words: Sequence[Token], near: frozenset[str] = frozenset()
-    ) -> Iterator[tuple[str, ...]]:
-        """Yield phrases for the words, the most restrictive first; none for too many words.
-
-        ``near`` are rules that the edited rule refers to; they are tried for operands too.
-        """
-        if not words or len(words) > tuning.LONGEST_PHRASE:
-            return
-        seen: set[tuple[str, ...]] = set()
-        for symbols in self._spellings(words, near):
-            for shape in (symbols, _as_list(symbols)):
-                if len(shape) <= tuning.MOST_SYMBOLS and shape not in seen:
-                    seen.add(shape)
-                    yield shape
-
-    def _spellings(self, words: Sequence[Token], near: frozenset[str]) -> Iterator[tuple[str, ...]]:
-        """Yield the words as they are, then with rules for operands, narrow ones first."""
-        parts = self.segmenter.parts(words)
-        if parts is None:
-            return
-        plain = [self.matcher.text(word) for word in words]
-        if all(plain):
-            tokens = tuple(token for token in plain if token)
-            yield tokens
-            yield tuple(self.collocations.written_by.get(token, token) for token in tokens)
-        choices = [self._levels(part, near) for part in parts]
-        if all(choices):
-            for level in (0, -1):
-                yield self._as_usual(parts, [levels[level] for levels in choices])
-            yield from islice(product(*choices), tuning.MOST_COMBINATIONS)
-        if not any(keyword for _, keyword in words):
-            rules = self.matcher.rules_for(tuple(kind for kind, _ in words))
-            # an unused rule was probably written for this purpose
-            yield from ((rule,) for rule in sorted(rules) if not self._uses[rule])
-            if len(parts) > 1:
-                return
-            # an operand that is all of a phrase may be whatever reads it, the most used ones first
-            ordered = sorted(rules, key=lambda r: (-self._uses[r], r))
-            yield from ((rule,) for rule in ordered[: tuning.MOST_OPERAND_RULES])
-
-    def _as_usual(self, parts: Sequence[tuple[Token, ...]], symbols: list[str]) -> tuple[str, ...]:
-        """Return the symbols, replaced by what the grammar usually has there if it fits."""
-        before = ("", "")
-        for place, part in enumerate(parts):
-            symbols[place] = self.usual_for([part], before) or symbols[place]
-            before = (before[1], symbols[place])
-        return tuple(symbols)
-
     def usual_for(self, spans: Sequence[tuple[Token, ...]], before: Before) -> str | None:
         """Return what is usual at such a place if it reads all the spans, or ``None``."""
         if any(keyword is not None for span in spans for _, keyword in span):
@@ -248,30 +198,6 @@ class Phraser:
     def _reads_all(self, rule: str, spans: Collection[tuple[int, ...]]) -> bool:
         return all(rule in self.matcher.rules_for(span) for span in spans)
 
-    def _levels(
-        self, part: tuple[Token, ...], near: frozenset[str] = frozenset()
-    ) -> tuple[str, ...]:
-        """Return the symbols for a part: its token, or rules from narrow to wide."""
-        if len(part) == 1:
-            token = self.matcher.text(part[0])
-            if token is None or part[0][1] is not None:
-                return () if token is None else (token,)
-            if not self.recognizer.lexer.has_value(part[0][0]):
-                if not self.recognizer.lexer.is_keyword(part[0][0]):
-                    return (token,)
-                kinds = (part[0][0],)
-                if not self.matcher.is_more_than_a_name(kinds):
-                    return (token,)
-                rules = self.matcher.rules_for(kinds) - self.matcher.keyword_lists
-                return (token, *self._levels_of(rules, near))
-        elif any(keyword is not None or kind < 0 for kind, keyword in part):
-            return ()
-        rules = self.matcher.rules_for(tuple(kind for kind, _ in part))
-        if not rules:
-            token = self.matcher.text(part[0])
-            return (token,) if len(part) == 1 and token else ()
-        return self._levels_of(rules, near)
-
     def _levels_of(self, rules: frozenset[str], near: frozenset[str]) -> tuple[str, ...]:
         found = self._known_levels.get((rules, near))
         if found is None:
@@ -287,15 +213,3 @@ class Phraser:
         )
         wide = max(rules, key=lambda r: (self._uses[r], len(self._wider[r] & rules), r))
         return tuple(dict.fromkeys((narrow, *close, wide)))
-
-
-def _as_list(symbols: tuple[str, ...]) -> tuple[str, ...]:
-    """Return ``x a , a , a`` as ``x a (',' a)*``, and other symbols unchanged."""
-    commas = [place for place, symbol in enumerate(symbols) if symbol == "','"]
-    if not commas:
-        return symbols
-    size = (commas[1] if len(commas) > 1 else len(symbols)) - commas[0] - 1
-    unit, lead = symbols[commas[0] - size : commas[0]], symbols[: commas[0]]
-    if not 0 < size <= commas[0] or symbols[commas[0] :] != ("','", *unit) * len(commas):
-        return symbols
-    return (*lead, f"(',' {' '.join(unit)})*")
