@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from typing import NamedTuple
 
 from grammar.notation.edits import AddToken, Edit
 from recovery import tuning
@@ -13,17 +12,6 @@ from recovery.clustering.file_trial import FileTrial
 from recovery.clustering.negative_score import NegativeCounter
 from recovery.clustering.regression import ParsedFiles
 from recovery.clustering.worth import Sought
-
-
-class _Place(NamedTuple):
-    """What decides between two proposals; the less comes first."""
-
-    #: Wrong programs accepted. No weight of repaired lines makes up for one.
-    negatives: int
-    #: The weight of what is repaired, less for what speaks against the edit (`_worth`).
-    worth_negated: float
-    #: Decides nothing but makes the order certain.
-    text: str
 
 
 class ProposalOrder:
@@ -50,14 +38,15 @@ class ProposalOrder:
         """
         share = {p.edits: self.readable_share(p.edits, sought.heaviest) for p in proposals}
 
-        def place(proposal: Proposal) -> _Place:
+        def key(proposal: Proposal) -> tuple[int, float, str]:
+            """Return negatives, for which no worth makes up, then the worth."""
             edits, own = proposal.edits, share[proposal.edits]
             # what reads the first line of a block but not the block accepts no program with it
             further = [other for other, read in share.items() if read > own]
             negatives = self._count_negatives(edits, further)
-            return _Place(negatives, -self._worth(proposal, sought, own, alike), str(edits))
+            return negatives, -self._worth(proposal, sought, own, alike), str(edits)
 
-        return sorted(proposals, key=place)
+        return sorted(proposals, key=key)
 
     def _worth(
         self, proposal: Proposal, sought: Sought, share: float, alike: Collection[int]
