@@ -100,18 +100,8 @@ MOST_ANSWERS_KEPT = 200_000
 MOST_ALIGNMENTS_KEPT = 2_000
 #: Tokens of a beginning from which longer ones are read on. Bound on memory.
 LONGEST_BEGINNING_KEPT = 24
-#: Tokens of a phrase. Bound.
-LONGEST_PHRASE = 24
-#: Symbols of a phrase written for one line: longer ones belong to more than one edit. Measured: 54
-#: clusters with 4.
-MOST_SYMBOLS = 8
-#: Rules tried for an operand that stands alone, the most used ones. Measured: other proposals with
-#: 3.
-MOST_OPERAND_RULES = 6
 #: Rules tried that the edited rule refers to already. Measured: 54 clusters with 1.
 MOST_NEAR_RULES = 2
-#: Combinations of rules for the operands of one phrase. Measured: the same with 6.
-MOST_COMBINATIONS = 12
 #: Steps that a rule costs at most where it usually stands, and more where it is narrower than what
 #: usually does. Measured: other proposals with 1, the same with 2.
 USUAL_RULE_COST = 2
@@ -128,7 +118,7 @@ MOST_CHOICES = 3
 MOST_LINE_SHAPES = 6
 #: How general operands are written: from the narrowest rule on, so many. Measured: 51 clusters with
 #: 1.
-PHRASE_LEVELS = 4
+PHRASE_LEVELS = 3
 
 # -------------------------------------------------------------------------------- sites of edits
 # `recovery.proposals.site_finder` and `*_sites` beside it, `line_reading`.

@@ -40,7 +40,8 @@ class EditWriter:
         words = [word for phrase in phrases for word in phrase]
         near = self._profile.near(some.rule)
         units = [_unit(phrase) or phrase for phrase in phrases]
-        for symbols in self._aligner.common_phrases(units, near):
+        alone = self._phraser.alone(units[0]) if len(phrases) == 1 else ()
+        for symbols in dict.fromkeys([*alone, *self._aligner.common_phrases(units, near)]):
             yield from self._written(some, words, symbols, looped=units != phrases)
 
     def sign(self, site: EditSite) -> str:

@@ -7,7 +7,7 @@ which is right, so all of them are proposed.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
 
 from grammar.notation.model import Repeat, walk
@@ -165,6 +165,18 @@ class Phraser:
         name = self.recognizer.lexer.name
         plain = self._fitted(name, kinds) if name else None
         return tuple(dict.fromkeys((plain, *levels))) if plain else levels
+
+    def alone(self, words: Sequence[Token]) -> Iterator[tuple[str, ...]]:
+        """Yield the words as tokens, then the rules that read them and that nothing calls.
+
+        Such a rule was probably written for this purpose.
+        """
+        tokens = tuple(filter(None, map(self.matcher.text, words)))
+        if len(tokens) == len(words):
+            yield tokens
+        if not any(keyword for _, keyword in words):
+            rules = self.matcher.rules_for(tuple(kind for kind, _ in words))
+            yield from ((rule,) for rule in sorted(rules) if not self._uses[rule])
 
     def usual_for(self, spans: Sequence[tuple[Token, ...]], before: Before) -> str | None:
         """Return what is usual at such a place if it reads all the spans, or ``None``."""
