@@ -17,6 +17,10 @@ from recovery.proposals.candidates import Candidate
 from recovery.proposals.grammar_profile import GrammarProfile
 from recovery.tuning import MOST_MERGED_EDITS
 
+_Writing = Insert | Widen | AddAlternative
+#: Edits that differ in one word: the edit with the suffix of its text, the words on both sides.
+_Family = tuple[_Writing, tuple[str, ...], tuple[str, ...]]
+
 
 def combined_edits(first: Sequence[Edit], second: Sequence[Edit]) -> tuple[Edit, ...]:
     """Return the edits of both without duplicates, ordered so that none shifts another's place."""
@@ -44,9 +48,7 @@ def are_one_change(profile: GrammarProfile, first: Sequence[Edit], second: Seque
     if len({*_main(profile, first), *_main(profile, second)}) > MOST_MERGED_EDITS:
         return False
     one, other = first[-1], second[-1]
-    if not isinstance(one, Insert | Widen | AddAlternative) or not isinstance(
-        other, Insert | Widen | AddAlternative
-    ):
+    if not isinstance(one, _Writing) or not isinstance(other, _Writing):
         return False
     if one != other and one.text.rstrip("?*+") == other.text.rstrip("?*+"):
         return True
@@ -89,41 +91,32 @@ def merged_as_choice(
     ``allowed`` says whether words at a place in the text of an edit may become a choice, ``reads``
     whether a rule reads all that another one reads: the other is then no choice beside it.
     """
-    families: dict[tuple[object, ...], dict[str, Candidate]] = defaultdict(dict)
+    families: dict[_Family, dict[str, Candidate]] = defaultdict(dict)
     for candidate in candidates:
         edit = candidate.edits[-1]
-        if not isinstance(edit, Insert | Widen | AddAlternative):
+        if not isinstance(edit, _Writing):
             continue
-        words = parts(unwrapped(edit.text) if isinstance(edit, Insert) else edit.text)
-        place = () if isinstance(edit, AddAlternative) else edit.at
+        suffix = edit.text[-1] if isinstance(edit, Insert) else ""
+        words = tuple(parts(unwrapped(edit.text) if suffix else edit.text))
         for i, word in enumerate(words):
             if allowed(edit, i):
-                frame = (type(edit), edit.rule, place, tuple(words[:i]), tuple(words[i + 1 :]))
-                suffix = edit.text[-1] if isinstance(edit, Insert) else ""
-                families[*frame, suffix][word] = candidate
+                family = replace(edit, text=suffix), words[:i], words[i + 1 :]
+                families[family][word] = candidate
     return [
-        _chosen(family[3], family[4], members)
+        _chosen(family, members)
         for family, members in families.items()
         if len(members) > 1
         and not any(reads(one, other) for one in members for other in members if one != other)
     ]
 
 
-def _chosen(left: object, right: object, members: dict[str, Candidate]) -> Candidate:
-    assert isinstance(left, tuple)
-    assert isinstance(right, tuple)
+def _chosen(family: _Family, members: dict[str, Candidate]) -> Candidate:
+    edit, left, right = family
     choice = f"({' | '.join(sorted({w for m in members for w in choices(m)}))})"
     body = " ".join((*left, choice, *right))
-    last = next(iter(members.values())).edits[-1]
-    edit: Edit
-    if isinstance(last, Insert):
-        text = f"({body}){last.text[-1]}" if left or right else f"{choice}{last.text[-1]}"
-        edit = Insert(last.rule, last.at, text)
-    elif isinstance(last, Widen):
-        edit = Widen(last.rule, last.at, body)
-    else:
-        assert isinstance(last, AddAlternative)
-        edit = AddAlternative(last.rule, body)
+    if edit.text and (left or right):
+        body = f"({body})"
     reserving = {e for c in members.values() for e in c.edits[:-1]}
     before = sorted(reserving, key=lambda e: (not isinstance(e, AddToken), str(e)))
-    return Candidate((*before, edit), max(c.breadth for c in members.values()) + 1)
+    edits = (*before, replace(edit, text=body + edit.text))
+    return Candidate(edits, max(c.breadth for c in members.values()) + 1)

@@ -8,17 +8,16 @@ from grammar.parser.recognizer import State
 from recovery import tuning
 from recovery.proposals.edit_site import EditSite, places_of
 from recovery.proposals.grammar_profile import GrammarProfile
-from recovery.proposals.insertion_sites import InsertionSites
+from recovery.proposals.insertion_sites import insertions
 from recovery.proposals.line_reading import LineReading
 
 
 class EarlierSiteFinder:
     """Finds the edit sites of one grammar at tokens that were read."""
 
-    def __init__(self, profile: GrammarProfile, insertions: InsertionSites) -> None:
+    def __init__(self, profile: GrammarProfile) -> None:
         self._recognizer = profile.recognizer
         self._profile = profile
-        self._insertions = insertions
 
     def find(self, reading: LineReading) -> Iterator[EditSite]:
         """Yield the sites of a line at tokens before the failing one."""
@@ -62,4 +61,5 @@ class EarlierSiteFinder:
                     sequence = self._profile.sequence(rule, place[:-1])
                     comes_next = reading.words[end][0] in self._profile.first(sequence, place[-1])
                     if comes_next or (not is_first and end >= reading.failed):
-                        yield from self._insertions.at(rule, place, reading.words[start:end])
+                        words = reading.words[start:end]
+                        yield from insertions(self._profile, rule, place, words)

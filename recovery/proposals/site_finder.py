@@ -19,7 +19,7 @@ from recovery.forms.symbols import Token
 from recovery.proposals.earlier_sites import EarlierSiteFinder
 from recovery.proposals.edit_site import EditSite, LinePattern, RankedEdits, places_of
 from recovery.proposals.grammar_profile import GrammarProfile
-from recovery.proposals.insertion_sites import InsertionSites
+from recovery.proposals.insertion_sites import insertion_width, insertions
 from recovery.proposals.line_reading import LineReading
 from recovery.proposals.line_sites import LineSiteFinder
 from recovery.proposals.phrases import Phraser
@@ -36,8 +36,7 @@ class EditSiteFinder:
         self._vocabulary = profile.vocabulary
         self._similarity = similarity
         self._phraser = phraser
-        self._insertions = InsertionSites(profile)
-        self._earlier = EarlierSiteFinder(profile, self._insertions)
+        self._earlier = EarlierSiteFinder(profile)
         self._lines = LineSiteFinder(profile, phraser)
 
     def find(self, line: LinePattern) -> Iterator[EditSite | RankedEdits]:
@@ -100,7 +99,7 @@ class EditSiteFinder:
                 not self._similarity.gathers(rule) and len(words) <= tuning.LONGEST_PREFIX
             )
             if (comes_next and is_prefix) or is_suffix:
-                yield from self._insertions.at(rule, place, words)
+                yield from insertions(self._profile, rule, place, words)
             yield from self._repetitions(rule, place, words)
 
     def _repetitions(self, rule: str, place: Address, words: Sequence[Token]) -> Iterator[EditSite]:
@@ -113,7 +112,7 @@ class EditSiteFinder:
         signs = self._signs_between(before.name, words)
         is_operand = rule in self._phraser.matcher.value_rules
         if signs and (is_operand or not any(keyword for _, keyword in signs)):
-            rank = self._insertions.width(rule) + tuning.REPETITION_COST
+            rank = insertion_width(self._profile, rule) + tuning.REPETITION_COST
             rank += self._phraser.breadth([before.name]) // tuning.REPETITION_BREADTH_PART
             yield EditSite("repetition", rule, place, signs, rank)
 
