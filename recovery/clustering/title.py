@@ -45,14 +45,14 @@ class TitleWriter:
         lead = self._keyword(line, 0)
         came = meant.get(index) or self._phrase(kinds[index])
         missing = self._omitted_keyword(line, context)
-        rule, left_out = ("", "") if missing or meant else self._left_out(best)
+        rule, left_out = ("", [""]) if missing or meant else self._left_out(best)
         at_end = kinds[index] in self._ends
         early = next((word for place, word in line.keywords if 0 < place < index), "")
-        if missing or self._is_keyword(left_out):
+        if missing or self._is_keyword(left_out[0]):
             subject = context.rule if index or at_end else came
-            said = f"{lead or _spoken(subject)} without {missing or left_out}"
-        elif " " in left_out:  # a part with a sign or word of its own
-            said = f"{_spoken(rule)} without {left_out}"
+            said = f"{lead or _spoken(subject)} without {missing or ' '.join(left_out)}"
+        elif len(left_out) > 1:  # a part with a sign or word of its own
+            said = f"{_spoken(rule)} without {' and '.join(map(self._named, left_out))}"
         elif early:  # read as a name, so the line failed later
             said = f"{lead} with {early}" if lead else f"unknown keyword {early}"
         elif 0 in meant and index <= 1:
@@ -63,7 +63,7 @@ class TitleWriter:
             said = f"{self._phrase(kinds[0])} alone on a line"
         elif at_end:
             what = f"{lead} line" if lead else came.removeprefix("the end of ")
-            said = f"{what} ends{self._instead(context) or f' within {_spoken(context.rule)}'}"
+            said = f"{what} ends{self._instead(context) or ' too early'}"
         elif index == 0:
             said = f"{came} begins a line{self._instead(context)}"
         else:
@@ -149,14 +149,21 @@ class TitleWriter:
         phrases = [self._phrase(self._kind_of[text]) for text in wanted]
         return f" where {' or '.join(phrases)} is expected"
 
-    def _left_out(self, best: Proposal | None) -> tuple[str, str]:
-        """Return the rule and the text that a proposal makes optional, if it does nothing else."""
+    def _left_out(self, best: Proposal | None) -> tuple[str, list[str]]:
+        """Return the rule and the parts that a proposal makes optional, if it does nothing else."""
         match best.edits if best else ():
             case [MakeOptional(rule=name, at=at, count=count)]:
                 rule = self._recognizer.grammar.by_name[name]
                 places = [(*at[:-1], at[-1] + n) for n in range(count)]
-                return name, " ".join(rule.source_of(element_at(rule, one)) for one in places)
-        return "", ""
+                return name, [rule.source_of(element_at(rule, one)) for one in places]
+        return "", [""]
+
+    def _named(self, text: str) -> str:
+        """Return a part of a rule as part of a sentence: a token, a rule, or as it is written."""
+        kind = self._kind_of.get(text, ERROR)
+        if kind != ERROR:
+            return self._phrase(kind)
+        return _with_article(text) if text in self._recognizer.network.entry else text
 
     def _is_keyword(self, text: str) -> bool:
         return self._lexer.is_keyword(self._kind_of.get(text, ERROR))
@@ -184,7 +191,7 @@ class TitleWriter:
     def _phrase(self, kind: int) -> str:
         """Return a token kind as part of a sentence: ``DECL``, ``','``, ``an enum constant``."""
         if kind == ERROR:
-            return "a character without a token"
+            return "an unknown character"
         name, text = self._lexer.names[kind], self._lexer.display[kind]
         if kind in self._ends:
             return f"the end of the {'file' if kind == EOF else 'line'}"
@@ -192,8 +199,12 @@ class TitleWriter:
             return text
         if text != name:
             return f"'{text}'"
-        words = _spoken(name)
-        return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"
+        return _with_article(name)
+
+
+def _with_article(name: str) -> str:
+    words = _spoken(name)
+    return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"
 
 
 def _spoken(name: str) -> str:
