@@ -141,51 +141,45 @@ def _gathered(
 ) -> BlockLines | None:
     block = BlockLines(opener, closer)
     outside: set[str] = set()
-    seen: list[Counter[str]] = []
-    lengths: list[int] = []
-    order: dict[str, None] = {}
     inside: dict[str, _Having] = defaultdict(lambda: defaultdict(set))
-    first: list[str] = []
+    bodies: list[list[str]] = []  # the leading words of the lines in each block
     for file in files:
-        open_: list[Counter[str]] = []
+        open_: list[list[str]] = []
         for lead, tokens in file.lines:
             if lead == opener:
-                open_.append(Counter())
+                open_.append([])
                 block.headers[tokens] |= file.origins
             elif lead == closer and open_:
+                bodies.append(open_.pop())
                 block.closers[tokens] |= file.origins
-                done = open_.pop()
-                lengths.append(sum(done.values()))
-                seen.append(done)
-            elif open_:
-                if not open_[-1]:
-                    first.append(lead)
-                open_[-1][lead] += 1
+            elif not open_:
+                outside.add(lead)
+            else:
+                open_[-1].append(lead)
                 if lead in free:
                     inside[lead][tokens] |= file.origins
-                    order.setdefault(lead)
-            elif lead in free:
-                outside.add(lead)
-    if not any(lengths):  # nothing is ever between: two statements that come in pairs
+    if not any(bodies):  # nothing is ever between: two statements that come in pairs
         return None
-    middles = [word for word in order if word not in outside]
     # a middle divides: it recurs in many of the blocks, or in several origins in nothing else
     middles = [
         word
-        for word in middles
-        if sum(word in s for s in seen) * tuning.MIDDLE_PART >= len(seen)
-        or len(frozenset[str]().union(*inside[word].values())) >= tuning.MIDDLE_ORIGINS
+        for word in inside
+        if word not in outside
+        and (
+            sum(word in body for body in bodies) * tuning.MIDDLE_PART >= len(bodies)
+            or len(frozenset[str]().union(*inside[word].values())) >= tuning.MIDDLE_ORIGINS
+        )
     ]
     if len(middles) > tuning.BLOCK_MIDDLES:
         middles = []
     for word in middles:
         block.middles[word] = inside[word]
-        often = max(s[word] for s in seen) > 1
-        missing = any(not s[word] for s in seen)
-        block.often[word] = ("*" if missing else "+") if often else ("?" if missing else "")
-    block.has_body = not middles or sum(w not in middles for w in first) * tuning.BODY_PART > len(
-        first
-    )
+        counts = [body.count(word) for body in bodies]
+        missing = 0 in counts
+        block.often[word] = ("*" if missing else "+") if max(counts) > 1 else "?" * missing
+    first = [body[0] for body in bodies if body]
+    others = sum(word not in middles for word in first)
+    block.has_body = not middles or others * tuning.BODY_PART > len(first)
     return block
 
 
