@@ -100,6 +100,9 @@ MOST_ANSWERS_KEPT = 200_000
 MOST_ALIGNMENTS_KEPT = 2_000
 #: Tokens of a beginning from which longer ones are read on. Bound on memory.
 LONGEST_BEGINNING_KEPT = 24
+#: Rules tried for an operand that stands alone, those that nothing calls and the most used ones.
+#: Measured: other proposals with 3; without it two of 40 mutants (seed 55) have rank 4 or 5, not 1.
+MOST_OPERAND_RULES = 6
 #: Rules tried that the edited rule refers to already. Measured: 54 clusters with 1.
 MOST_NEAR_RULES = 2
 #: Steps that a rule costs at most where it usually stands, and more where it is narrower than what

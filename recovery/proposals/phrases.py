@@ -167,16 +167,20 @@ class Phraser:
         return tuple(dict.fromkeys((plain, *levels))) if plain else levels
 
     def alone(self, words: Sequence[Token]) -> Iterator[tuple[str, ...]]:
-        """Yield the words as tokens, then the rules that read them and that nothing calls.
+        """Yield the words as tokens, then rules that read them, those that nothing calls first.
 
-        Such a rule was probably written for this purpose.
+        Such a rule was probably written for this purpose. An operand may be any of the most used.
         """
         tokens = tuple(filter(None, map(self.matcher.text, words)))
         if len(tokens) == len(words):
             yield tokens
         if not any(keyword for _, keyword in words):
             rules = self.matcher.rules_for(tuple(kind for kind, _ in words))
-            yield from ((rule,) for rule in sorted(rules) if not self._uses[rule])
+            ordered = sorted(rules, key=lambda r: (self._uses[r] > 0, -self._uses[r], r))
+            is_operand = len(self.segmenter.parts(words) or ()) == 1
+            for rule in ordered[: tuning.MOST_OPERAND_RULES]:
+                if is_operand or not self._uses[rule]:
+                    yield (rule,)
 
     def usual_for(self, spans: Sequence[tuple[Token, ...]], before: Before) -> str | None:
         """Return what is usual at such a place if it reads all the spans, or ``None``."""
