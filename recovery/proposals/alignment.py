@@ -1,4 +1,4 @@
-"""Alignment of phrases for a proposal: one phrase that reads several.
+"""Alignment of phrases for a proposal: one phrase that reads one or several.
 
 Lines of one construct differ in their operands and in their optional parts. They are aligned by
 keywords and signs, as a multiple sequence alignment. A column of operands becomes a rule that reads

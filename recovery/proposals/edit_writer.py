@@ -1,8 +1,7 @@
 """What is written at a site: the edits that let a rule read the unexpected tokens there.
 
-The text is the tokens themselves, or a phrase with rules in place of operands
-(`recovery.proposals.phrases`). If several lines have the same site, it is a phrase that reads all
-of them (`recovery.proposals.alignment`).
+The text is the tokens themselves, or a phrase that reads those of all lines with this site
+(`recovery.proposals.alignment`), with rules in place of operands (`recovery.proposals.phrases`).
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Phrases: unexpected tokens as symbols that a rule can be given.
+"""The rules that a phrase can have in place of operands, and how much each accepts.
 
 The same tokens can be written as they are (``STEP 2``), or with rules in place of operands (``STEP
 literal``, ``STEP expression``). The first is the most restrictive. Corpus and negatives decide
-which is right, so all of them are proposed.
+which is right, so all of them are proposed. `recovery.proposals.alignment` writes the phrases.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from recovery.proposals.segmentation import Segmenter
 
 
 class Phraser:
-    """Writes phrases with the rules of one grammar."""
+    """Chooses the rules of one grammar for phrases."""
 
     def __init__(self, profile: GrammarProfile) -> None:
         self.profile = profile
