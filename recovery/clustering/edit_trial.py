@@ -88,6 +88,7 @@ class EditTrial:
         self._known: dict[tuple[Edit, ...], dict[int, int | None]] = defaultdict(dict)
         self._answers = 0
         self._reader = DetourReader(recognizer.grammar, recognizer.network)
+        self._texts: dict[tuple[int, tuple[tuple[int, str], ...]], tuple[int, ...]] = {}
 
     def relevant(self, edits: Sequence[Edit]) -> list[int]:
         """Return the lines that the edits might repair."""
@@ -115,6 +116,19 @@ class EditTrial:
 
     def result(self, edits: Sequence[Edit], among: Iterable[int] | None = None) -> TrialResult:
         """Return the result of the edits on the lines ``among``, by default on all of them."""
+        found = self.failures(edits, among).items()
+        return TrialResult(
+            frozenset(n for n, failed in found if failed is None),
+            frozenset(n for n, failed in found if (failed or 0) > self.lines[n].form.index),
+        )
+
+    def failures(
+        self, edits: Sequence[Edit], among: Iterable[int] | None = None
+    ) -> dict[int, int | None]:
+        """Return the index at which each line that the edits might repair fails under them.
+
+        That is ``None`` if it can be read, and 0 if the edits do not fit.
+        """
         chosen = self.relevant(edits)
         if among is not None:
             wanted = frozenset(among)
@@ -125,13 +139,10 @@ class EditTrial:
         known = self._known[tuple(edits)]
         new = [n for n in chosen if n not in known]
         if new:
-            known |= dict.fromkeys(new, 0)  # edits that do not fit read no line further
+            known |= dict.fromkeys(new, 0)
             known |= self._failures(edits, new)
             self._answers += len(new)
-        return TrialResult(
-            frozenset(n for n in chosen if known[n] is None),
-            frozenset(n for n in chosen if (known[n] or 0) > self.lines[n].form.index),
-        )
+        return {n: known[n] for n in chosen}
 
     def _failures(
         self, edits: Sequence[Edit], numbers: Iterable[int]
@@ -152,12 +163,15 @@ class EditTrial:
     def _text(self, number: int, words: frozenset[str]) -> tuple[int, ...]:
         """Return the tokens that lead to a line and its own; reserved ``words`` are keywords."""
         line = self.lines[number]
-        prefix = self._index.prefix[line.form.before]
-        kinds = [*prefix, *line.form.kinds]
-        for place, word in line.keywords if words else ():
-            if word in words:
+        meant = tuple(pair for pair in line.keywords if pair[1] in words) if words else ()
+        known = self._texts.get((number, meant))
+        if known is None:
+            prefix = self._index.prefix[line.form.before]
+            kinds = [*prefix, *line.form.kinds]
+            for place, word in meant:
                 kinds[len(prefix) + place] = self._reader.kind(word)
-        return tuple(kinds)
+            known = self._texts[number, meant] = tuple(kinds)
+        return known
 
     def is_ambiguous(self, edits: Sequence[Edit], among: Iterable[int]) -> bool:
         """Return whether one of the lines has two readings with the edits.

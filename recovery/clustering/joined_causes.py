@@ -156,7 +156,9 @@ def _united(search: CauseSearch, causes: Sequence[Cause]) -> Cause:
     if len(causes) == 1:
         return causes[0]
     lines = frozenset(n for cause in causes for n in cause.lines)
-    found = {p.edits: p for cause in causes for p in cause.proposals}
+    found: dict[tuple[Edit, ...], Proposal] = {}
+    for p in (p for cause in causes for p in cause.proposals):
+        found.setdefault(p.edits, p)  # an earlier cause was sought among more lines
     again = search.best_for(sorted(lines), lines)
     for p in again.proposals if again else ():
         found.setdefault(p.edits, search.proposal(p.edits, p.breadth))

@@ -160,17 +160,6 @@ class NegativeSet:
                 found.append(negative)
         return found
 
-    def kinds(self, lexer: Lexer) -> list[list[int]]:
-        """Return the token kinds of each program, end of file included."""
-        lines = self._cut(lexer)
-        if lines is None:
-            texts = ([lexer.kinds[x] for x in lexer.lexemes(n.text)] for n in self.negatives)
-            return [[*(kind for kind in kinds if kind != SKIPPED), EOF] for kinds in texts]
-        return [
-            [*(kind for number in program for kind in lines[number]), EOF]
-            for program in self._programs
-        ]
-
     def _cut(self, lexer: Lexer) -> list[list[int]] | None:
         """Return the token kinds of each line; ``None`` if a token contains a line end."""
         if lexer not in self._kinds:
