@@ -28,7 +28,7 @@ class EarlierSiteFinder:
     def _taken_for_something_else(self, reading: LineReading) -> Iterator[EditSite]:
         """Yield alternatives of rules as which earlier tokens were read."""
         recognizer, network = self._recognizer, self._recognizer.network
-        begun = {frames for _, frames in reading.rules_begun()}
+        begun = reading.frames_begun()
         latest: dict[tuple[int, tuple[int, ...]], tuple[int, int, State]] = {}
         for start in range(reading.failed):
             state = reading.before(start)

@@ -39,14 +39,10 @@ class LineReading:
         """Return the configurations before a token up to the failing one."""
         return configurations_of(self._recognizer, self._states[number])
 
-    def rules_begun(self) -> set[tuple[str, tuple[int, ...]]]:
-        """Return the rules that were being read at the failure, with the frames below them."""
-        rule = self._recognizer.network.rule
-        return {
-            (rule[each[i - 1]], each[i:])
-            for each in self._recognizer.frames(self._states[-1])
-            for i in range(1, len(each))
-        }
+    def frames_begun(self) -> set[tuple[int, ...]]:
+        """Return the frames below the rules that were being read at the failure."""
+        found = self._recognizer.frames(self._states[-1])
+        return {each[i:] for each in found for i in range(1, len(each))}
 
     def resuming(self, state: State, start: int, earliest: int = 0) -> list[int]:
         """Return where the line can be continued from ``state``, to its end or for some tokens.
