@@ -109,10 +109,9 @@ class CandidateFinder:
         spelled = {edits: str(edits) for edits in found.ranks}
         expected = {edits: found.gain(edits) for edits in found.ranks}
         for edits in sorted(expected, key=lambda e: (-expected[e], spelled[e])):
-            if not self.profile.is_left_recursive(edits[-1]):
-                rule = getattr(edits[-1], "rule", "")
-                varied[edits] = expected[edits] * tuning.SAME_RULE_FACTOR ** in_rule[rule]
-                in_rule[rule] += 1
+            rule = getattr(edits[-1], "rule", "")
+            varied[edits] = expected[edits] * tuning.SAME_RULE_FACTOR ** in_rule[rule]
+            in_rule[rule] += 1
         ordered = sorted(varied, key=lambda e: (-varied[e], spelled[e]))
         return [Candidate(edits, found.ranks[edits]) for edits in ordered]
 
@@ -127,11 +126,7 @@ class CandidateFinder:
         found = _Found()
         found.add((self._as_block(rule, block) for rule in rules for block in blocks), ())
         ordered = sorted(found.ranks.items(), key=lambda item: (item[1], str(item[0])))
-        return [
-            Candidate(edits, rank)
-            for edits, rank in ordered
-            if not self.profile.is_left_recursive(edits[-1])
-        ]
+        return [Candidate(edits, rank) for edits, rank in ordered]
 
     def _as_block(self, rule: str, block: Block) -> RankedEdits:
         known = self.profile.grammar.by_name

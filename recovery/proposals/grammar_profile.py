@@ -14,7 +14,6 @@ from functools import cached_property
 from itertools import pairwise
 
 from grammar.notation.addresses import Address, sequences
-from grammar.notation.edits import AddAlternative, Edit, Insert, MakeOptional, Widen
 from grammar.notation.model import (
     Alternative,
     Element,
@@ -350,39 +349,6 @@ class GrammarProfile:
             kinds = {lexer.kind_of[word] for word in self.vocabulary.words_of(element.name)}
             if all(map(lexer.is_keyword, kinds)):
                 yield from kinds
-
-    # ------------------------------------------------------------------------- left recursion
-
-    def is_left_recursive(self, edit: Edit) -> bool:
-        """Return whether an edit makes a rule left-recursive."""
-        match edit:
-            case AddAlternative(rule=rule, text=text):
-                return rule in self._leading(text)
-            case Insert(rule=rule, at=at, text=text) | Widen(rule=rule, at=at, text=text):
-                return rule in self._leading(text) and self.is_at_start(rule, at)
-            case MakeOptional(rule=rule, at=at, count=count):
-                behind = self.sequence(rule, at[:-1]).elements[at[-1] - 1 + count :]
-                text = " ".join(map(self.grammar.by_name[rule].source_of, behind))
-                return rule in self._leading(text) and self.is_at_start(rule, at)
-            case _:
-                return False
-
-    def _leading(self, text: str) -> frozenset[str]:
-        """Return the rules that can come before the first token of a text."""
-        network = self.recognizer.network
-        found: frozenset[str] = frozenset()
-        for symbol in text.replace("(", " ").replace(")", " ").split():
-            name = symbol.rstrip("?*+")
-            entry = network.entry.get(name)
-            if entry is None:
-                if symbol[-1] in "?*" and name:
-                    continue
-                break
-            reach = network.reach(entry)
-            found |= reach.rules
-            if not reach.ends and symbol[-1] not in "?*":
-                break
-        return found
 
     def is_at_start(self, rule: str, at: Address) -> bool:
         """Return whether a place can be reached before the rule has read a token."""
