@@ -64,19 +64,9 @@ class TypeChecker:
         """Note a finding; see `Context.finding`."""
         self.diagnostics.append(self.context.finding(slug, where, message, **more))
 
-    def reject(
-        self,
-        slug: str,
-        where: Node | Span,
-        verdict: Verdict,
-        fix: Fix | None = None,
-        *,
-        is_unconfirmed: bool = False,
-    ) -> None:
+    def reject(self, slug: str, where: Node | Span, verdict: Verdict, **more: Any) -> None:
         """Note a finding from a bad verdict; see `Context.refusal`."""
-        self.diagnostics.append(
-            self.context.refusal(slug, where, verdict, fix=fix, is_unconfirmed=is_unconfirmed)
-        )
+        self.diagnostics.append(self.context.refusal(slug, where, verdict, **more))
 
     # ------------------------------------------------------------------------- names
 
@@ -146,7 +136,7 @@ class TypeChecker:
             self._note_constant(to, node.name)
         if type(value) is Array and type(node) in _NAMES:
             brackets = self._brackets(to, value, node)
-            self.reject("array-without-index", node, without_index(value), brackets)
+            self.reject("array-without-index", node, without_index(value), fix=brackets)
             return
         verdict = accepts(to, value)
         if not verdict:
@@ -223,12 +213,9 @@ class TypeChecker:
         What a type of the controller lacks that one release alone describes may be elsewhere.
         """
         is_unconfirmed = not self.is_described(type_)
-        found = self.context.refusal(
-            "no-such-component", name, verdict, fix=fix, is_unconfirmed=is_unconfirmed
-        )
-        self.diagnostics.append(found)
+        self.reject("no-such-component", name, verdict, fix=fix, is_unconfirmed=is_unconfirmed)
         if isinstance(type_, Structure):
-            self.context.lacking.append((type_, name.text, found))
+            self.context.lacking.append((type_, name.text, self.diagnostics[-1]))
 
     def reject_constant(
         self,
@@ -243,9 +230,8 @@ class TypeChecker:
         """Note a constant that an enumeration lacks, which may have a slip where it is declared."""
         is_unconfirmed |= not self.is_described(to)
         fix = self.context.suggestions.suggest(constant.name, to.constants, mark="#")
-        found = self.context.refusal(slug, where, verdict, fix=fix, is_unconfirmed=is_unconfirmed)
-        self.diagnostics.append(found)
-        self.context.lacking.append((to, constant.name, found))
+        self.reject(slug, where, verdict, fix=fix, is_unconfirmed=is_unconfirmed)
+        self.context.lacking.append((to, constant.name, self.diagnostics[-1]))
 
     def is_described(self, type_: Type) -> bool:
         """Return whether more than one release describes a type of the controller."""

@@ -7,11 +7,10 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode, flow_graph
-from grammar.diagnostics.diagnostic import Diagnostic, Fix
+from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.diagnostics.did_you_mean import did_you_mean, one_of
 from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.error_suppression import suppressions
-from grammar.semantics.rules import is_confirmed
 from grammar.syntax import ast
 
 # Guessing costs time for each label, and one who has so many wrong has something else in mind.
@@ -35,22 +34,6 @@ def check(context: Context) -> Iterator[Diagnostic]:
         yield from _not_suppressed(context, routine)
 
 
-def _finding(
-    context: Context,
-    slug: str,
-    where: ast.Node,
-    message: str,
-    rule: str,
-    *,
-    reason: str = "",
-    fix: Fix | None = None,
-) -> Diagnostic:
-    is_unconfirmed = not is_confirmed([rule])
-    return context.finding(
-        slug, where, message, reason=reason, is_unconfirmed=is_unconfirmed, fix=fix
-    )
-
-
 # ------------------------------------------------------------------------------------------- EXIT
 
 
@@ -64,12 +47,10 @@ def _exits(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
             if placed.inside is not None:
                 block = "SWITCH" if isinstance(placed.inside.statement, ast.Switch) else "IF"
                 reason = f"{block} is not a loop"
-            yield _finding(
-                context,
+            yield context.finding(
                 "exit-outside-loop",
                 statement,
                 "EXIT outside a loop",
-                "CTL-02",
                 reason=reason,
             )
 
@@ -93,7 +74,7 @@ def _label_twice(context: Context, own: _Labels) -> Iterator[Diagnostic]:
         for other in others:
             assert isinstance(other.statement, ast.Label)
             message = f"label {other.statement.name.text} stands on line {line} already"
-            yield _finding(context, "label-twice", other.statement.name, message, "CTL-07")
+            yield context.finding("label-twice", other.statement.name, message)
 
 
 def _gotos(
@@ -104,7 +85,7 @@ def _gotos(
     slips = {} if context.is_cut(routine) else _slipped(context, routine, own, homes)
     for wanted, name in slips.items():
         message = f"no GOTO leads to {name.text}, and there is no label {wanted}"
-        yield _finding(context, "unknown-label", name, message, "CTL-07", fix=one_of([wanted]))
+        yield context.finding("unknown-label", name, message, fix=one_of([wanted]))
     for placed in routine.statements:
         goto = placed.statement
         if not isinstance(goto, ast.Goto):
@@ -118,12 +99,10 @@ def _gotos(
             guess = did_you_mean(goto.label.text, labels) if guesses > 0 else None
             guesses -= 1
             home = homes.get(goto.label.key, ("",))[0]
-            yield _finding(
-                context,
+            yield context.finding(
                 "unknown-label",
                 goto.label,
                 f"{routine.node.name.text} has no label {goto.label.text}",
-                "CTL-07",
                 reason=f"it is in {home}, another routine" if home else "",
                 fix=guess,
             )
@@ -133,7 +112,7 @@ def _gotos(
             line = context.line(targets[0].statement)
             kind = _BLOCKS.get(type(block.statement), "a block")
             message = f"GOTO into {kind}, to {goto.label.text} on line {line}"
-            yield _finding(context, "goto-into-block", goto, message, "CTL-07")
+            yield context.finding("goto-into-block", goto, message)
 
 
 def _slipped(
@@ -243,11 +222,9 @@ def _not_suppressed(context: Context, routine: RoutineBody) -> Iterator[Diagnost
         if following is not None:
             word = context.source.text[slice(*following.span)].split()[0].upper()
             reason = f"it does not apply to {word}"
-        yield _finding(
-            context,
+        yield context.finding(
             "proceed-lost",
             node,
             "ON_ERROR_PROCEED has no effect",
-            "FCT-12",
             reason=reason,
         )

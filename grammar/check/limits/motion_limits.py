@@ -8,6 +8,8 @@ documented; therefore these are warnings.
 
 from __future__ import annotations
 
+from typing import Any
+
 from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.type_checker import TypeChecker
 from grammar.semantics.scopes import Found
@@ -45,20 +47,25 @@ def _judge(
         return
     low, high, reason = limits
     message = f"{shown} must be between {low:g} and {high:g}"
+    rules = ("MOT-02", "MOT-04", "ARI-11")
+    check_range(checker, node, message, low, high, reason=reason, rules=rules, is_unconfirmed=True)
+
+
+def check_range(
+    checker: TypeChecker,
+    node: ast.Expression,
+    message: str,
+    low: float,
+    high: float,
+    **more: Any,
+) -> None:
+    """Check a value that a system variable receives, or note what a parameter may be there."""
     value = constant(checker.context, node)
     if value is None:
         use = f"assigns it, and {message}"
         checker.context.note_bound(node, "invalid-system-value", use, low, high)
     elif not isinstance(value, bool | str) and not low <= value <= high:
-        rules = ("MOT-02", "MOT-04", "ARI-11")
-        checker.report(
-            "invalid-system-value",
-            node,
-            message,
-            reason=reason,
-            rules=rules,
-            is_unconfirmed=True,
-        )
+        checker.report("invalid-system-value", node, message, **more)
 
 
 def _limits(checker: TypeChecker, node: ast.Expression) -> tuple[float, float, str] | None:

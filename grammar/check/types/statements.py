@@ -12,7 +12,7 @@ from typing import Any
 
 from grammar.check.analysis.constant_folding import constant
 from grammar.check.analysis.context import Context, RoutineBody
-from grammar.check.analysis.type_checker import Accepts, TypeChecker
+from grammar.check.analysis.type_checker import TypeChecker
 from grammar.check.types.assignments import assign
 from grammar.check.types.calls import call
 from grammar.check.types.expressions import type_checker
@@ -40,19 +40,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
     yield from checker.diagnostics
 
 
-def _condition(_to: Type, value: Type) -> Verdict:
-    return condition(value)
-
-
-def _number(_to: Type, value: Type) -> Verdict:
-    return number(value)
-
-
-def _integer(_to: Type, value: Type) -> Verdict:
-    return integer(value)
-
-
-def _bound(_to: Type, value: Type) -> Verdict:
+def _bound(value: Type) -> Verdict:
     """FOR counts with INT; that a REAL is refused is recollection [CTL-05]."""
     verdict = integer(value, "CTL-05")
     return replace(verdict, rules=("CTL-05",)) if value == REAL else verdict
@@ -69,24 +57,28 @@ class _Routine:
     # ----------------------------------------------------------------------- places
 
     def needs(
-        self, accepts: Accepts, slug: str, *nodes: ast.Expression | None, to: Type = UNKNOWN
+        self,
+        accepts: Callable[[Type], Verdict],
+        slug: str,
+        *nodes: ast.Expression | None,
+        to: Type = UNKNOWN,
     ) -> None:
         """Type values that a statement needs; those that are left out need nothing."""
         for node in nodes:
             if node is not None:
-                self.checker.check(to, node, accepts, slug)
+                self.checker.check(to, node, lambda _to, value: accepts(value), slug)
 
     def condition(self, node: ast.Expression) -> None:
         """Check that an expression is BOOL."""
-        self.needs(_condition, "not-a-truth-value", node)
+        self.needs(condition, "not-a-truth-value", node)
 
     def numbers(self, *nodes: ast.Expression | None) -> None:
         """Numbers: times, distances, angles."""
-        self.needs(_number, "not-a-number-here", *nodes, to=REAL)
+        self.needs(number, "not-a-number-here", *nodes, to=REAL)
 
     def integers(self, *nodes: ast.Expression | None) -> None:
         """Integers: numbers of interrupts, priorities."""
-        self.needs(_integer, "not-an-integer", *nodes)
+        self.needs(integer, "not-an-integer", *nodes)
 
     def types(self, *nodes: ast.Expression | None) -> None:
         """Expressions that may be anything."""
@@ -112,7 +104,7 @@ class _Routine:
         """FOR: its counter, bounds and step are INT, the step a constant [CTL-05, CTL-06]."""
         found = self.context.found(node.counter)
         if found is not None:
-            verdict = _bound(UNKNOWN, self.checker.type_of(found))
+            verdict = _bound(self.checker.type_of(found))
             if not verdict:
                 self.checker.reject("wrong-counter", node.counter, verdict)
         self.needs(_bound, "wrong-counter", node.first, node.last)
@@ -132,7 +124,7 @@ class _Routine:
 
     def switch(self, node: ast.Switch) -> None:
         """SWITCH over CHAR, INT or an enumeration; CASE has constants of that [CTL-03]."""
-        self.needs(lambda _to, value: selector(value), "wrong-selector", node.selector)
+        self.needs(selector, "wrong-selector", node.selector)
         chosen = self.context.types[node.selector]
         is_known = bool(selector(chosen))
         seen: dict[object, ast.Node] = {}
@@ -193,7 +185,7 @@ class _Routine:
         if isinstance(inner, ast.Aggregate):
             self.checker.infer(inner, self._position(inner))
         else:
-            self.needs(lambda _to, value: target(value), "not-a-position", node)
+            self.needs(target, "not-a-position", node)
 
     def _on_path(self, node: ast.Motion, place: ast.Expression) -> None:
         """Report an axis position as target of a CP motion, which needs a pose."""
