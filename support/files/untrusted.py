@@ -34,11 +34,14 @@ def open_file(file: Path) -> io.FileIO:
     It never blocks, as opening a pipe without a writer would.
     """
     flags = os.O_RDONLY | getattr(os, "O_BINARY", 0) | getattr(os, "O_NONBLOCK", 0)
-    stream = io.FileIO(os.open(file, flags), "rb")
-    if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
-        stream.close()
+    opened = os.open(file, flags)
+    mode = os.fstat(opened).st_mode
+    if not stat.S_ISREG(mode):
+        os.close(opened)
+        if stat.S_ISDIR(mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(file))
         raise OSError(errno.EINVAL, "not a regular file", str(file))
-    return stream
+    return io.FileIO(opened, "rb")
 
 
 def read_bytes(file: Path, most: int = MOST_BYTES) -> bytes:

@@ -124,10 +124,16 @@ def _work_of(
     names: dict[str, str] = {}
     projects = deque[list[Found | Skipped]]()
     size = 0
-    for root in _outermost(around or roots):
-        every = asked if [root] == list(roots) else filter(is_left, _below(root))
-        there = [one for one in every if isinstance(one, Found) or is_large(one)]
-        for _, _, members in projects_of(there):
+    everywhere = [
+        asked if [root] == list(roots) else list(filter(is_left, _below(root)))
+        for root in _outermost(around or roots)
+    ]
+    there = {_place(one) for every in everywhere for one in every if isinstance(one, Found)}
+    # a hidden folder is read where it is asked for, and not as part of what is around
+    everywhere.append([one for one in asked if isinstance(one, Found) and _place(one) not in there])
+    for every in everywhere:
+        known = [one for one in every if isinstance(one, Found) or is_large(one)]
+        for _, _, members in projects_of(known):
             found = [one for one in members if isinstance(one, Found)]
             own = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
             if own:

@@ -29,6 +29,14 @@ def test_a_pipe_without_a_writer_is_refused_at_once(tmp_path: Path) -> None:
         read_bytes(pipe)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows opens no folder")
+def test_a_folder_is_refused_by_its_name(tmp_path: Path) -> None:
+    """The error names the folder, whoever reports it."""
+    with pytest.raises(IsADirectoryError) as raised:
+        read_bytes(tmp_path)
+    assert str(tmp_path) == raised.value.filename
+
+
 def test_any_ends_of_lines_are_those_of_a_text(tmp_path: Path) -> None:
     """A text is the same whichever system wrote it."""
     file = tmp_path / "a.txt"

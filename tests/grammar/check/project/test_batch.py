@@ -274,6 +274,16 @@ def test_nothing_to_check_is_said(tmp_path: Path) -> None:
         check(tmp_path)
 
 
+def test_a_hidden_folder_is_checked_where_it_is_asked_for(tmp_path: Path) -> None:
+    """What is around does not show it, be there a program in it or none."""
+    root = lay(tmp_path / "root", A__src="DEF A()\nEND\n")
+    hidden = lay(root / ".kept", B__src="DEF B()\nEXIT\nEND\n", C__src="")
+    found = check(hidden, around=[root])
+    assert [("B.src", 2, "KRL401")] == codes(found)
+    assert ["C.src"] == [Path(one.path).name for one in found.skipped]
+    assert 1 == check(root).files
+
+
 def test_findings_name_their_files_as_given(tmp_path: Path) -> None:
     """Paths have slashes and begin with what was named."""
     root = lay(tmp_path / "root", A__src="DEF A()\nEXIT\nEND\n")
