@@ -247,6 +247,7 @@ def test_a_watch_checks_again_when_a_program_changes(
     def one_change(*roots: Path, watch_filter: Callable[[object, str], bool], **_: object):  # type: ignore[no-untyped-def]
         assert (Path("cell"),) == roots
         assert [True, False] == [watch_filter(None, name) for name in ("x/A.SRC", "x/a.log")]
+        yield set[tuple[str, str]]()  # it watches, and nothing has changed yet
         (cell / "a.src").write_text("DEF A()\nEND\n", encoding="utf-8")
         yield {("modified", "a.src")}
 
