@@ -182,10 +182,13 @@ class GrammarView:
             yield InferredStep(title, edits, (), breadth=RULE_SYMBOLS * len(edits))
 
     def form(self, shapes: Iterable[tuple[Symbol, ...]]) -> str | None:
-        """Return the form of distinct shapes; ``None`` if there is none, or only a loose one."""
+        """Return the form of distinct shapes; ``None`` if there is none, or only a loose one.
+
+        No line needs a fold, so it must not read a line that is shorter than all shapes.
+        """
         some = list(shapes)
         form = self.writer.form(some)
-        return None if form and is_loose(form, some) else form
+        return None if form and is_loose(form, some, counts_words=True) else form
 
 
 def is_optional(element: Element) -> bool:

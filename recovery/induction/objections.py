@@ -7,14 +7,14 @@ must not accept more of those than lines have shown, as broken files suggest suc
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from grammar.notation.edits import Edit, apply
 from grammar.notation.model import Grammar, GrammarError
 from grammar.notation.wellformed import problem
-from grammar.parser.recognizer import Recognizer
+from grammar.parser.recognizer import Recognizer, State
 from recovery.clustering.edit_trial import edited
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.survey.failing_line import source_lines
@@ -76,22 +76,25 @@ class EditReview:
     def _read_so_far(self) -> frozenset[tuple[int, int, int, bool]]:
         return self._damaged_read(self.recognizer)
 
+    @cached_property
+    def _examined(self) -> frozenset[tuple[int, int]]:
+        """The lines of the texts, by number, that no other line is like."""
+        found: dict[tuple[State, tuple[int, ...]], tuple[int, int]] = {}
+        for number, text in enumerate(self.texts):
+            for place, (state, line) in enumerate(_lines(self.recognizer, text)):
+                found.setdefault((state, tuple(line)), (number, place))
+        return frozenset(found.values())
+
     def _damaged_read(self, recognizer: Recognizer) -> frozenset[tuple[int, int, int, bool]]:
         """Which lines of the texts are read without one of their tokens, or with it twice."""
         found = set()
         for number, text in enumerate(self.texts):
-            kinds, state, begin = recognizer.kinds(text), recognizer.start, 0
-            for end in (n for n, kind in enumerate(kinds) if kind == recognizer.line_kind):
-                line = kinds[begin : end + 1]
-                for place in range(len(line) - 1):
+            for at, (state, line) in enumerate(_lines(recognizer, text)):
+                for place in range(len(line) - 1) if (number, at) in self._examined else ():
                     for is_twice in (False, True):
                         damaged = line[: place + is_twice] + line[place + 1 - is_twice :]
                         if recognizer.run(state, damaged)[1] is None:
-                            found.add((number, begin, place, is_twice))
-                state, failed = recognizer.run(state, line)
-                if failed is not None:
-                    break
-                begin = end + 1
+                            found.add((number, at, place, is_twice))
         return frozenset(found)
 
     def _is_read_anew(self, wider: Recognizer, negative: Negative) -> bool:
@@ -109,3 +112,15 @@ class EditReview:
         kinds = recognizer.kinds(negative.text)
         _, failed = recognizer.run(recognizer.start, kinds)
         return failed is None or kinds[:failed].count(recognizer.line_kind) + 1 == negative.line
+
+
+def _lines(recognizer: Recognizer, text: str) -> Iterator[tuple[State, list[int]]]:
+    """Yield the tokens of each line, with the state before it, as far as they can be read."""
+    kinds, state, begin = recognizer.kinds(text), recognizer.start, 0
+    for end in (n for n, kind in enumerate(kinds) if kind == recognizer.line_kind):
+        line = kinds[begin : end + 1]
+        yield state, line
+        state, failed = recognizer.run(state, line)
+        if failed is not None:
+            return
+        begin = end + 1

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Sequence, Set
+from collections.abc import Collection, Iterable, Iterator, Sequence, Set
 from dataclasses import replace
 from functools import cached_property
-from itertools import chain
+from itertools import chain, pairwise
 from typing import Literal, get_args
 
 from grammar.notation.edits import (
@@ -169,7 +169,7 @@ class Induction:
             rejected = self.negatives.rejected_by(recognizer)
             found = zip(self.shown.files, failures, strict=True)
             good = (file.text for file, failed in found if not failed)
-            texts = sorted(good, key=len)[:FOLD_FILES]
+            texts = _varied(recognizer, sorted(good, key=len))
             self._review = EditReview(recognizer, rejected, self._language.reserved_in, texts)
         review = self._review
         if step == "fold":
@@ -566,6 +566,18 @@ def _narrower(review: EditReview, fold: InferredStep, had: Set[str]) -> Recogniz
     if not all(map(narrower.accepts, review.texts)):
         return "loses lines that can be read"
     return narrower
+
+
+def _varied(recognizer: Recognizer, texts: Iterable[str]) -> list[str]:
+    """Return a few of the texts: each has two neighbours that none before it has."""
+    found: list[str] = []
+    known: set[tuple[int, int]] = set()
+    for text in texts:
+        pairs = set(pairwise(recognizer.kinds(text)))
+        if not pairs <= known and len(found) < FOLD_FILES:
+            found.append(text)
+            known |= pairs
+    return found
 
 
 def _operands(recognizer: Recognizer, corpus: CorpusLines) -> list[tuple[int, ...]]:

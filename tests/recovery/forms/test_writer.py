@@ -208,6 +208,21 @@ def test_a_loose_form(writer: FormWriter, form: str, loose: bool) -> None:
     assert loose == is_loose(form, lines)
 
 
+@pytest.mark.parametrize(
+    ("form", "loose"),
+    [
+        ("PAIR LEFT? LIST? expression", True),
+        ("PAIR (LEFT | LIST) expression", False),
+        ("PAIR '+' expression", False),
+        ("PAIR LEFT+ '+'? LIST?", True),
+    ],
+)
+def test_a_form_that_is_shorter_than_its_lines(writer: FormWriter, form: str, loose: bool) -> None:
+    """With words and signs counted, a form must not read less than the shortest line."""
+    lines = [_symbols(writer, line) for line in ("PAIR LEFT A", "PAIR LIST 1")]
+    assert loose == is_loose(form, lines, counts_words=True)
+
+
 def test_a_list_may_hold_itself() -> None:
     """Samples of a rule that is a list of itself come to an end: the inner one is an operand."""
     nested = _GRAMMAR.replace(
