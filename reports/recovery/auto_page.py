@@ -81,9 +81,9 @@ def _target(target: Record) -> list[Figure]:
         "held": f"of the files held out that {name} parses",
         "held_known_words": "of those of them whose words some file shown has, or the start",
         "held_within_reach": "of those of them within reach: no neighbours that no file shown has",
-        "sentences_rejected": f"of its random sentences {name} rejects",
-        "sentences_rejected_for_growth": "of them at a line that the start rejects too",
-        "negatives_accepted": "of the negatives accepted",
+        "sentences_rejected": f"of its random sentences are rejected by {name}",
+        "sentences_rejected_for_growth": "of them are so at a line that the start rejects too",
+        "negatives_accepted": "of the negatives are accepted",
     }
     found = []
     for key, label in labels.items():
