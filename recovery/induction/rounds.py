@@ -573,8 +573,10 @@ def _varied(recognizer: Recognizer, texts: Iterable[str]) -> list[str]:
     found: list[str] = []
     known: set[tuple[int, int]] = set()
     for text in texts:
+        if len(found) == FOLD_FILES:
+            break
         pairs = set(pairwise(recognizer.kinds(text)))
-        if not pairs <= known and len(found) < FOLD_FILES:
+        if not pairs <= known:
             found.append(text)
             known |= pairs
     return found
