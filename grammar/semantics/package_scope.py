@@ -31,8 +31,9 @@ from grammar.syntax.references import Space
 _NO_SPAN = (0, 0)
 #: Routines of inline forms with unknown parameters, with whether each returns a value.
 _OF_INLINE_FORMS = {
-    **dict.fromkeys("SVEL_CP SVEL_JOINT SACC_JOINT SJERK SGEAR_JERK".split(), True),
-    **dict.fromkeys("STOOL STOOL2 SBASE SLOAD SIPO_MODE SAPO SAPO_PTP".split(), True),
+    **dict.fromkeys("SVEL_CP SVEL_JOINT SACC_CP SACC_JOINT SJERK SGEAR_JERK".split(), True),
+    **dict.fromkeys("STOOL STOOL2 SBASE SLOAD SIPO_MODE SORI_TYP SAPO SAPO_PTP".split(), True),
+    "USE_CM_PRO_VALUES": True,
 }
 
 

@@ -36,6 +36,8 @@ from support.gc_pause import gc_paused
 from support.lazy_dataclass import dataclass
 
 _TYPES = frozenset({Kind.STRUCTURE, Kind.ENUMERATION, Kind.PLAIN_TYPE})
+#: What only a routine or a structure declares, and so no stand-in.
+_INNER = frozenset({Kind.PARAMETER, Kind.MEMBER})
 #: The deepest nesting of blocks that is run. It is far above what people write, and low enough for
 #: an interpreter that recurses on Python's stack.
 MOST_BLOCKS = 50
@@ -200,7 +202,7 @@ class CheckedProgram:
     def used_stand_ins(self, *routines: Routine) -> tuple[StandIn, ...]:
         """Return the stand-ins that the files reachable from some routines use, in their order.
 
-        Each has the place of its first use, if a file of the project itself uses it.
+        Each has the place of its first use in these files, those of the project itself first.
         """
         if not self.stand_ins:
             return ()
@@ -210,6 +212,8 @@ class CheckedProgram:
             answers = unit.checked.resolution.answers
             for name in sorted(answers, key=lambda one: one.span):
                 answer = answers[name]
+                if isinstance(answer, Found) and answer.symbol.kind in _INNER:
+                    continue
                 is_type = isinstance(answer, Found) and answer.symbol.kind in _TYPES
                 is_declared = isinstance(answer, Found) and _is_project_file(answer.module)
                 places.setdefault((name.key, is_type, is_declared), (unit, name))
@@ -220,9 +224,7 @@ class CheckedProgram:
                 used.append(one)
             elif key in places:
                 unit, name = places[key]
-                is_own = unit.module.folder != FOLDER
-                line = unit.line(name)
-                used.append(replace(one, path=unit.module.path, line=line) if is_own else one)
+                used.append(replace(one, path=unit.module.path, line=unit.line(name)))
         return tuple(used)
 
     def reached(self, *routines: Routine) -> tuple[Unit, ...]:

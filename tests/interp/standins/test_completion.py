@@ -529,14 +529,14 @@ def test_used_stand_ins() -> None:
 
 
 def test_what_only_has_the_name_of_a_stand_in_is_not_listed() -> None:
-    """A point of its own data list, or a type, though other programs lack one of that name."""
+    """A point of its own data list, a type, a component, though other programs lack such a name."""
     files = {
         "main.src": f"DEF main ( )\nDECL POS P\n{HOME}PTP XP1\nOPT ( )\nEND\n",
         "main.dat": "DEFDAT main\nDECL E6POS XP1={X 400.0,Y 0.0,Z 600.0}\nENDDAT\n",
-        "other.src": "DEF other ( )\nINT I\nPTP XP1\nPTP POS[I]\nEND\n",
+        "other.src": "DEF other ( )\nINT I\nPTP XP1\nPTP POS[I]\nWAIT SEC Z\nEND\n",
     }
     program = _program(files)
-    assert {"XP1", "POS", "OPT"} == {one.name for one in program.stand_ins}
+    assert {"XP1", "POS", "OPT", "Z"} == {one.name for one in program.stand_ins}
     assert ["OPT"] == [one.name for one in program.used_stand_ins(program.start())]
 
 
