@@ -17,7 +17,7 @@ from support.lazy_dataclass import dataclass
 
 if TYPE_CHECKING:
     from grammar.diagnostics.diagnostic import Diagnostic
-    from support.files.discovery import Found
+    from support.files.discovery import FoundFile
 
 FILE_NAME: Final = "krl.toml"
 
@@ -44,7 +44,7 @@ class Settings:
     packages: tuple[str, ...] = ()
     profile: str | None = None
 
-    def leaves_out(self, found: "Found") -> bool:
+    def leaves_out(self, found: "FoundFile") -> bool:
         """Return whether a file is excluded."""
         return any(_fits(self._below(found.file, found.member), one) for one in self.exclude)
 

@@ -24,7 +24,7 @@ from grammar.semantics.resolve import resolve
 from grammar.semantics.symbol_table import table_of
 from grammar.syntax.build import builder
 from grammar.syntax.source import Source
-from support.files.discovery import Found, IngestError, Skipped, discover, read_source
+from support.files.discovery import FoundFile, IngestError, Skipped, discover, read_source
 from support.gc_pause import gc_paused
 from support.measure.isolated import call_isolated
 from support.measure.speed import MB, ROUNDS, Clock, machine, peak_mb, shares
@@ -115,7 +115,9 @@ def _one_changed(roots: Sequence[Path]) -> float | None:
             copies.append(copy)
         cache = Path(folder, "kept")
         call_isolated(_timed, copies, cache)
-        files = [one for one in discover(copies) if isinstance(one, Found) and one.member is None]
+        files = [
+            one for one in discover(copies) if isinstance(one, FoundFile) and one.member is None
+        ]
         if not files:
             return None
         file = sorted(files, key=lambda one: (one.size, one.path))[len(files) // 2].file

@@ -23,7 +23,14 @@ from itertools import chain
 from typing import Generic, Protocol, TypeAlias, TypeVar
 
 from support.files.archives import is_archive
-from support.files.discovery import DRIVE_FOLDERS, Found, Skipped, SourceFile, is_drive, read_source
+from support.files.discovery import (
+    DRIVE_FOLDERS,
+    FoundFile,
+    Skipped,
+    SourceFile,
+    is_drive,
+    read_source,
+)
 from support.lazy_dataclass import dataclass
 
 DRIVES = {"r1", "steu"}
@@ -44,7 +51,7 @@ class _HasPath(Protocol):
 
 
 _File = TypeVar("_File", bound=_HasPath)
-_Candidate = TypeVar("_Candidate", bound=Found | Skipped)
+_Candidate = TypeVar("_Candidate", bound=FoundFile | Skipped)
 
 
 @dataclass(frozen=True, slots=True)

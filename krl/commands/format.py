@@ -12,7 +12,7 @@ from support.files.atomic_write import write_atomic
 from support.gc_pause import gc_paused
 
 if TYPE_CHECKING:
-    from support.files.discovery import Found, Skipped
+    from support.files.discovery import FoundFile, Skipped
 
 
 _LONGEST = 60  # characters of a token in a message
@@ -62,7 +62,7 @@ def format_programs(
     return FINDINGS if counts[_Outcome.LEFT] or counts[_Outcome.WOULD_CHANGE] else FINE
 
 
-def _format(candidate: "Found | Skipped", check: bool) -> _Outcome:
+def _format(candidate: "FoundFile | Skipped", check: bool) -> _Outcome:
     """Format one file, and print on one line what is wrong with it."""
     from grammar.syntax.formatter import FormatterDefect, formatter
     from support.files.discovery import Skipped, read_source

@@ -130,7 +130,7 @@ class OpenProject:
         self._folders[folder] = None
         try:
             found = [
-                one for one in discovery.discover([folder]) if isinstance(one, discovery.Found)
+                one for one in discovery.discover([folder]) if isinstance(one, discovery.FoundFile)
             ]
         except discovery.IngestError:
             return
@@ -359,7 +359,7 @@ def _read(path: str, text: str) -> _Read:
 
 
 def _is_left_out(path: str, agreed: Settings) -> bool:
-    return agreed.leaves_out(discovery.Found(path, "", 0, Path(path), None))
+    return agreed.leaves_out(discovery.FoundFile(path, "", 0, Path(path), None))
 
 
 def _kept(source: Source, found: Iterable[Diagnostic], agreed: Settings) -> tuple[Diagnostic, ...]:

@@ -9,7 +9,7 @@ from krl.running.project_folders import project_root
 
 if TYPE_CHECKING:
     from grammar.syntax.source import Source
-    from support.files.discovery import Found
+    from support.files.discovery import FoundFile
 
 #: Of a larger project only the files that the program refers to are read: 16 MB take some 20 s.
 _MOST_FILES, _MOST_BYTES = 20_000, 1 << 24
@@ -35,7 +35,7 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     projects = projects_of(found)
     root, is_controller, whole = next(one for one in projects if asked in one[2])
 
-    def shown(one: "Found") -> str:
+    def shown(one: "FoundFile") -> str:
         return one.path.removeprefix(f"{root}/") if root else one.path
 
     is_large = len(whole) > _MOST_FILES or sum(one.size for one in whole) > _MOST_BYTES
@@ -56,15 +56,15 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
     return sources, shown(asked), left
 
 
-def _discovered(root: Path) -> "list[Found]":
+def _discovered(root: Path) -> "list[FoundFile]":
     """Return the files below a folder or in an archive; raises `InputError` if there are none."""
-    from support.files.discovery import Found, IngestError, discover
+    from support.files.discovery import FoundFile, IngestError, discover
 
     with as_input_errors(IngestError):
-        return [one for one in discover([root]) if isinstance(one, Found)]
+        return [one for one in discover([root]) if isinstance(one, FoundFile)]
 
 
-def _named(file: Path, found: "Sequence[Found]") -> "Found":
+def _named(file: Path, found: "Sequence[FoundFile]") -> "FoundFile":
     """Return the file at a path; raises `InputError` if it was not found.
 
     In an archive the letter case counts only if files differ in nothing else, as on a controller.
@@ -102,12 +102,14 @@ def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
             yield one.found.origin, Source(one.text, one.path)
 
 
-def _named_from(asked: "Found", found: "Sequence[Found]", *, is_controller: bool) -> "list[Found]":
+def _named_from(
+    asked: "FoundFile", found: "Sequence[FoundFile]", *, is_controller: bool
+) -> "list[FoundFile]":
     """Return the files to which a file refers, directly or not, with system data and submit."""
     from grammar.syntax.source import names_in_text
     from support.files.discovery import SourceFile, read_source
 
-    by_name: dict[str, list[Found]] = {}
+    by_name: dict[str, list[FoundFile]] = {}
     todo = [asked]
     folder = PurePosixPath(asked.path).parent
     for one in found:
@@ -116,7 +118,7 @@ def _named_from(asked: "Found", found: "Sequence[Found]", *, is_controller: bool
         if path.name.startswith("$") or path.suffix.lower() == ".sub":
             todo += [one] if is_controller or path.parent == folder else []
     todo += by_name.pop(PurePosixPath(asked.path).stem.upper())
-    named: dict[Found, None] = {}
+    named: dict[FoundFile, None] = {}
     while todo:
         one = todo.pop()
         if one not in named:

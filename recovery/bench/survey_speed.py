@@ -21,7 +21,7 @@ from grammar.parser.failures import FailureFinder
 from grammar.parser.recognizer import Recognizer
 from recovery.survey.survey import Survey, survey
 from support.files.decode import Decoded, decode
-from support.files.discovery import Found, IngestError, discover, read, source_files
+from support.files.discovery import FoundFile, IngestError, discover, read, source_files
 from support.measure.isolated import call_isolated
 from support.measure.speed import MB, ROUNDS, Clock, machine, shares
 
@@ -157,7 +157,7 @@ def _phased(roots: Sequence[Path], grammar_text: str) -> dict[str, float]:
     clock = Clock()
     gc.collect()
     with clock.during("reading"):
-        read_now = (read(found) for found in discover(roots) if isinstance(found, Found))
+        read_now = (read(found) for found in discover(roots) if isinstance(found, FoundFile))
         contents = dict.fromkeys(data for data in read_now if isinstance(data, bytes))
     with clock.during("decoding"):
         texts = [one.text for one in map(decode, contents) if isinstance(one, Decoded)]

@@ -24,7 +24,7 @@ from recovery.growth.inclusion import fixed_texts_added, occurs
 from recovery.survey.result_cache import key_of
 from recovery.survey.surveyed_files import SurveyedFile
 from support.files.decode import Decoded, decode, digest
-from support.files.discovery import Found, Skipped, discover, read
+from support.files.discovery import FoundFile, Skipped, discover, read
 from support.files.result_store import ResultStore
 from support.parallel.ordered_map import ordered_map
 from support.parallel.progress import Progress, no_progress
@@ -69,7 +69,7 @@ def contents_of(roots: Sequence[Path]) -> tuple[list[SurveyedFile], list[Skipped
 
     Raises `support.files.discovery.IngestError` if there is nothing to read.
     """
-    met: dict[str, tuple[Found, list[tuple[str, str]], int]] = {}
+    met: dict[str, tuple[FoundFile, list[tuple[str, str]], int]] = {}
     skipped = []
     for candidate in discover(roots):
         data = candidate if isinstance(candidate, Skipped) else read(candidate)

@@ -30,7 +30,7 @@ from recovery.survey.unreserved_keywords import (
     names_used,
 )
 from support.files.decode import decode, digest
-from support.files.discovery import Found, IngestError, Skipped, discover, read
+from support.files.discovery import FoundFile, IngestError, Skipped, discover, read
 from support.files.result_store import ResultStore
 from support.parallel.ordered_map import check_scheduler, ordered_map
 from support.parallel.progress import Progress, no_progress
@@ -121,7 +121,7 @@ def survey_texts(programs: Sequence[tuple[str, str]], grammar: Grammar) -> Surve
     files = []
     unreserved = UnreservedKeywords()
     for path, text in programs:
-        found = Found(path, "given", len(text), Path(path), None)
+        found = FoundFile(path, "given", len(text), Path(path), None)
         failed = failures_of(finder, text, forms)
         files.append(SurveyedFile(found, ((path, "given"),), path, len(text), failed))
         if not failed:
@@ -174,7 +174,7 @@ class _Gathered:
         self.submitted: deque[tuple[str, str]] = deque()
         self.read_now = 0
 
-    def register(self, number: int, found: Found, data: bytes) -> bool:
+    def register(self, number: int, found: FoundFile, data: bytes) -> bool:
         """Record the content of a candidate; return whether it has to be read."""
         key = digest(data)
         if not self.files.register(number, key, len(data)):
@@ -218,7 +218,7 @@ def _tasks(gathered: _Gathered) -> Iterator[tuple[bytes, ...]]:
         data = candidate if isinstance(candidate, Skipped) else read(candidate)
         if isinstance(data, Skipped):
             gathered.skipped.append(data)
-        elif isinstance(candidate, Found) and gathered.register(number, candidate, data):
+        elif isinstance(candidate, FoundFile) and gathered.register(number, candidate, data):
             contents.append(data)
             size += len(data)
             if size >= _TASK_BYTES or len(contents) >= _TASK_FILES:

@@ -18,7 +18,7 @@ from weakref import finalize
 
 from recovery.survey.failing_line import FailingLine, as_failing_line, as_values, source_lines
 from support.files.decode import digest
-from support.files.discovery import Found, Skipped, read_source
+from support.files.discovery import FoundFile, Skipped, read_source
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class SurveyedFile:
     ``found`` is the first of them. Each iteration over ``failures`` may read them anew.
     """
 
-    found: Found
+    found: FoundFile
     places: tuple[tuple[str, str], ...]
     digest: str
     size: int
@@ -104,7 +104,7 @@ class SurveyedFiles(Sequence[SurveyedFile]):
             """
         )
 
-    def add(self, candidates: Iterable[Found | Skipped]) -> tuple[int, int]:
+    def add(self, candidates: Iterable[FoundFile | Skipped]) -> tuple[int, int]:
         """Add all candidates; return their number, and the bytes of those that were found."""
         size = 0
 
@@ -112,7 +112,7 @@ class SurveyedFiles(Sequence[SurveyedFile]):
             nonlocal size
             item: tuple[str | int | None, ...]
             for one in candidates:
-                if isinstance(one, Found):
+                if isinstance(one, FoundFile):
                     size += one.size
                     item = (one.path, one.origin, one.size, str(one.file), one.member)
                 else:
@@ -123,7 +123,7 @@ class SurveyedFiles(Sequence[SurveyedFile]):
         ((count,),) = self._base.execute("SELECT COUNT(*) FROM candidate")
         return count, size
 
-    def candidates(self) -> Iterator[tuple[int, Found | Skipped]]:
+    def candidates(self) -> Iterator[tuple[int, FoundFile | Skipped]]:
         """Yield all candidates with their numbers."""
         for number, item in self._base.execute("SELECT number, item FROM candidate"):
             yield number, _candidate(item)
@@ -182,7 +182,7 @@ class SurveyedFiles(Sequence[SurveyedFile]):
     def __getitem__(self, place: int | slice) -> SurveyedFile | list[SurveyedFile]:
         return list(self)[place]
 
-    def _contents(self, reason: str) -> Iterator[tuple[int, str, int, str, int, list[Found]]]:
+    def _contents(self, reason: str) -> Iterator[tuple[int, str, int, str, int, list[FoundFile]]]:
         """Yield number, digest, size, reason, count of failures and files of each content."""
         rows = self._base.execute(
             "SELECT content.number, digest, size, reason, failing, item"
@@ -191,12 +191,12 @@ class SurveyedFiles(Sequence[SurveyedFile]):
         )
         for content, several in groupby(rows, lambda row: row[:5]):
             found = (_candidate(row[5]) for row in several)
-            yield *content, [one for one in found if isinstance(one, Found)]
+            yield *content, [one for one in found if isinstance(one, FoundFile)]
 
 
-def _candidate(item: str) -> Found | Skipped:
+def _candidate(item: str) -> FoundFile | Skipped:
     path, *others = json.loads(item)
     if len(others) == 2:
         return Skipped(path, *others)
     origin, size, file, member = others
-    return Found(path, origin, size, Path(file), member)
+    return FoundFile(path, origin, size, Path(file), member)

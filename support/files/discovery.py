@@ -43,7 +43,7 @@ class IngestError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class FoundFile:
     """A candidate file whose bytes have not been read yet.
 
     `path` is for display: `/` separated, relative if the root was given so, control characters
@@ -72,13 +72,13 @@ class Skipped:
 class SourceFile:
     """A file with KRL: its location, bytes and text."""
 
-    found: Found
+    found: FoundFile
     data: bytes
     decoded: Decoded
 
     @property
     def path(self) -> str:
-        """See `Found.path`."""
+        """See `FoundFile.path`."""
         return self.found.path
 
     @property
@@ -87,7 +87,7 @@ class SourceFile:
         return self.decoded.text
 
 
-def discover(roots: Sequence[Path]) -> Iterator[Found | Skipped]:
+def discover(roots: Sequence[Path]) -> Iterator[FoundFile | Skipped]:
     """Yield the candidates below `roots`: files, folders, `.zip` archives, paths inside archives.
 
     The roots are checked before anything is returned. A file below two roots belongs to the nearer
@@ -97,13 +97,13 @@ def discover(roots: Sequence[Path]) -> Iterator[Found | Skipped]:
     return _survey(_resolved(roots))
 
 
-def files_around(folder: Path, most: int) -> list[Found]:
+def files_around(folder: Path, most: int) -> list[FoundFile]:
     """Return the files below the outermost folder around ``folder`` that holds few others.
 
     That is at most ``most`` files and folders; none are returned if ``folder`` itself has more.
     Archives are not opened; what cannot be read is left out.
     """
-    found: list[Found] = []
+    found: list[FoundFile] = []
     inner = folder
     for outer in (folder, *folder.parents):
         more: list[str] = []
@@ -124,7 +124,9 @@ def files_around(folder: Path, most: int) -> list[Found]:
                             pending += [] if _is_link(entry) else [entry.path]
                     elif _is_program(entry.name) and entry.is_file(follow_symlinks=False):
                         more.append(entry.path)
-        found += [Found(printable(Path(one).as_posix()), "", 0, Path(one), None) for one in more]
+        found += [
+            FoundFile(printable(Path(one).as_posix()), "", 0, Path(one), None) for one in more
+        ]
         inner = outer
     return found
 
@@ -139,7 +141,7 @@ def is_drive(names: Iterable[str]) -> bool:
     return len(parts) > 1 and not parts.isdisjoint({"system", "mada"})
 
 
-def read(found: Found) -> bytes | Skipped:
+def read(found: FoundFile) -> bytes | Skipped:
     """Return the content of a candidate, or why it cannot be read. Works in any process."""
     try:
         if found.member is not None:
@@ -152,7 +154,7 @@ def read(found: Found) -> bytes | Skipped:
         return Skipped(found.path, f"cannot be read: {archives.why(error)}", found.origin)
 
 
-def read_source(candidate: Found | Skipped) -> SourceFile | Skipped:
+def read_source(candidate: FoundFile | Skipped) -> SourceFile | Skipped:
     """Return the text of a candidate, or why it has none."""
     if isinstance(candidate, Skipped):
         return candidate
@@ -198,7 +200,7 @@ class _Root:
     folder: bool
     inside: str = ""
 
-    def holds(self, item: Found | Skipped) -> bool:
+    def holds(self, item: FoundFile | Skipped) -> bool:
         """Return whether something found in the root's file is part of the root."""
         return not self.inside or f"{item.path}/".startswith(printable(f"{self.inside}/"))
 
@@ -374,7 +376,7 @@ def _wanted_member(path: str) -> bool:
 # -- the survey of places --------------------------------------------------------------------------
 
 
-def _survey(roots: list[_Root]) -> Iterator[Found | Skipped]:
+def _survey(roots: list[_Root]) -> Iterator[FoundFile | Skipped]:
     """Yield everything below `roots`; see `discover`."""
     places = frozenset(root.real for root in roots)
     names = _archive_names(
@@ -388,7 +390,7 @@ def _survey(roots: list[_Root]) -> Iterator[Found | Skipped]:
     for root in roots:
         for place in _walk(root, places - {root.real}):
             for item in filter(root.holds, _items(place, names)):
-                if isinstance(item, Found):
+                if isinstance(item, FoundFile):
                     found += 1
                 else:
                     first = first or item
@@ -403,7 +405,7 @@ def _survey(roots: list[_Root]) -> Iterator[Found | Skipped]:
         raise IngestError(f"{where}: no .src, .dat or .sub file in {'it' if lone else 'any'}")
 
 
-def _items(place: _Place, names: dict[Path, str]) -> Iterator[Found | Skipped]:
+def _items(place: _Place, names: dict[Path, str]) -> Iterator[FoundFile | Skipped]:
     """Yield the candidates at a place, or why there is none."""
     shown = printable(place.shown)
     if place.problem:
@@ -419,10 +421,10 @@ def _items(place: _Place, names: dict[Path, str]) -> Iterator[Found | Skipped]:
         if size > archives.MAX_FILE_BYTES:
             yield Skipped(shown, archives.too_large(), place.origin)
         else:
-            yield Found(shown, place.origin, size, place.real, None)
+            yield FoundFile(shown, place.origin, size, place.real, None)
 
 
-def _in_archive(file: Path, shown: str, origin: str) -> Iterator[Found | Skipped]:
+def _in_archive(file: Path, shown: str, origin: str) -> Iterator[FoundFile | Skipped]:
     """Yield the candidates in an archive.
 
     If all candidates are in nested archives, each of these is an origin.
@@ -441,7 +443,7 @@ def _in_archive(file: Path, shown: str, origin: str) -> Iterator[Found | Skipped
         if member.problem:
             yield Skipped(path, printable(member.problem), name)
         else:
-            yield Found(path, name, member.size, file, member.address)
+            yield FoundFile(path, name, member.size, file, member.address)
 
 
 def _archive_names(files: Iterable[Path]) -> dict[Path, str]:

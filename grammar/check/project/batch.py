@@ -36,7 +36,7 @@ from grammar.check.project.suppression_comments import apply_suppressions
 from grammar.diagnostics.diagnostic import Diagnostic, Region, diagnose, in_order
 from grammar.semantics.project_grouping import projects_of
 from support.files.decode import digest
-from support.files.discovery import Found, IngestError, Skipped, discover, read
+from support.files.discovery import FoundFile, IngestError, Skipped, discover, read
 from support.files.result_store import ResultStore
 from support.gc_pause import gc_paused
 from support.lazy_dataclass import dataclass
@@ -58,7 +58,7 @@ def check_paths(
     options: CheckOptions,
     *,
     around: Sequence[Path] = (),
-    leaves_out: Callable[[Found], bool] | None = None,
+    leaves_out: Callable[[FoundFile], bool] | None = None,
     jobs: int | None = None,
     cache: Path | None = None,
     on_found: Progress = no_progress,
@@ -100,47 +100,49 @@ class _Work:
     ``names`` are the paths to report the files under, by their own paths; others are only read.
     """
 
-    projects: deque[list[Found | Skipped]]
+    projects: deque[list[FoundFile | Skipped]]
     names: Mapping[str, str]
     skipped: Sequence[Skipped]
     count: int
     size: int
 
-    def taken(self) -> Iterator[list[Found | Skipped]]:
+    def taken(self) -> Iterator[list[FoundFile | Skipped]]:
         """Yield each project, and keep none: there may be more files than memory."""
         while self.projects:
             yield self.projects.popleft()
 
 
 def _work_of(
-    roots: Sequence[Path], around: Sequence[Path], leaves_out: Callable[[Found], bool] | None
+    roots: Sequence[Path], around: Sequence[Path], leaves_out: Callable[[FoundFile], bool] | None
 ) -> _Work:
-    def is_left(one: Found | Skipped) -> bool:
+    def is_left(one: FoundFile | Skipped) -> bool:
         return leaves_out is None or isinstance(one, Skipped) or not leaves_out(one)
 
     asked = list(filter(is_left, discover(roots)))
     skipped = [candidate for candidate in asked if isinstance(candidate, Skipped)]
-    wanted = {_place(one): one.path for one in asked if isinstance(one, Found)}
+    wanted = {_place(one): one.path for one in asked if isinstance(one, FoundFile)}
     names: dict[str, str] = {}
-    projects = deque[list[Found | Skipped]]()
+    projects = deque[list[FoundFile | Skipped]]()
     size = 0
     everywhere = [
         asked if [root] == list(roots) else list(filter(is_left, _below(root)))
         for root in _outermost(around or roots)
     ]
-    there = {_place(one) for every in everywhere for one in every if isinstance(one, Found)}
+    there = {_place(one) for every in everywhere for one in every if isinstance(one, FoundFile)}
     # a hidden folder is read where it is asked for, and not as part of what is around
-    everywhere.append([one for one in asked if isinstance(one, Found) and _place(one) not in there])
+    everywhere.append(
+        [one for one in asked if isinstance(one, FoundFile) and _place(one) not in there]
+    )
     for every in everywhere:
-        known = [one for one in every if isinstance(one, Found) or is_large(one)]
+        known = [one for one in every if isinstance(one, FoundFile) or is_large(one)]
         for _, _, members in projects_of(known):
-            found = [one for one in members if isinstance(one, Found)]
+            found = [one for one in members if isinstance(one, FoundFile)]
             own = {one.path: wanted[_place(one)] for one in found if _place(one) in wanted}
             if own:
                 names |= own
                 projects.append(members)
                 size += sum(one.size for one in found)
-    count = sum(isinstance(one, Found) for some in projects for one in some)
+    count = sum(isinstance(one, FoundFile) for some in projects for one in some)
     return _Work(projects, names, skipped, count, size)
 
 
@@ -150,7 +152,7 @@ def _outermost(roots: Sequence[Path]) -> list[Path]:
     return [root for place, root in places.items() if places.keys().isdisjoint(place.parents)]
 
 
-def _below(root: Path) -> Iterator[Found | Skipped]:
+def _below(root: Path) -> Iterator[FoundFile | Skipped]:
     """Yield what is below a root, if anything."""
     with suppress(IngestError):
         yield from discover([root])
@@ -172,7 +174,7 @@ def _reported(result: ProjectResult, names: Mapping[str, str]) -> ProjectResult:
     )
 
 
-def _place(found: Found) -> tuple[Path, str | None]:
+def _place(found: FoundFile) -> tuple[Path, str | None]:
     """Return the location of a file, however it was found."""
     return found.file, found.member
 
@@ -183,12 +185,12 @@ def _place(found: Found) -> tuple[Path, str | None]:
 class _Project:
     """A project that is being checked."""
 
-    def __init__(self, members: Sequence[Found | Skipped], options: CheckOptions) -> None:
+    def __init__(self, members: Sequence[FoundFile | Skipped], options: CheckOptions) -> None:
         self.options = options
         self.contents: list[Content] = []
         self.unread: list[Diagnostic] = []
         for member in members:
-            data = read(member) if isinstance(member, Found) else member
+            data = read(member) if isinstance(member, FoundFile) else member
             if isinstance(data, bytes):
                 self.contents.append(Content(member.path, member.origin, data))
                 continue
@@ -288,9 +290,9 @@ class _Project:
         return ProjectResult(tuple(in_order(found)), lines, tuple(skipped), sizes, kept)
 
 
-def _address(found: Found | Skipped) -> str:
+def _address(found: FoundFile | Skipped) -> str:
     """Identifies a file, and how it was named."""
-    file = _place(found) if isinstance(found, Found) else ()
+    file = _place(found) if isinstance(found, FoundFile) else ()
     place = f"{file}\n{found.path}\n{found.origin}"
     return digest(place.encode("utf-8", "surrogatepass"))
 
@@ -307,7 +309,7 @@ def _shares(contents: Mapping[int, Content], count: int) -> list[dict[int, Conte
 
 
 def _run(
-    projects: Iterator[list[Found | Skipped]],
+    projects: Iterator[list[FoundFile | Skipped]],
     pool: StickyPool,
     store: ResultStore,
     options: CheckOptions,

@@ -17,7 +17,7 @@ from dataclasses import field
 from grammar.check.project.result_cache import ProjectResult
 from grammar.diagnostics.diagnostic import Diagnostic, Located, Region, diagnose, in_order, merged
 from support.files import archives
-from support.files.discovery import Found, Skipped
+from support.files.discovery import FoundFile, Skipped
 from support.lazy_dataclass import dataclass
 
 #: Bytes of compressed findings that are held in memory.
@@ -121,6 +121,6 @@ def together(results: Iterable[ProjectResult], skipped: Sequence[Skipped]) -> Ch
     )
 
 
-def is_large(one: Found | Skipped) -> bool:
+def is_large(one: FoundFile | Skipped) -> bool:
     """Return whether a file was skipped for its size, though it may be a program."""
     return isinstance(one, Skipped) and one.reason == archives.too_large()

@@ -13,14 +13,14 @@ from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
     from grammar.diagnostics.diagnostic import Diagnostic
-    from support.files.discovery import Found
+    from support.files.discovery import FoundFile
 
 
 def fix_files(
     paths: Sequence[Path],
     checked: "Iterable[Diagnostic]",
     is_wanted: "Callable[[Diagnostic], bool]",
-    leaves_out: "Callable[[Found], bool]",
+    leaves_out: "Callable[[FoundFile], bool]",
     *,
     is_shown: bool,
 ) -> bool:
@@ -31,7 +31,7 @@ def fix_files(
     """
     from grammar.check.project.repair import repair
     from grammar.syntax.source import Source
-    from support.files.discovery import Found, IngestError, Skipped, discover, read_source
+    from support.files.discovery import FoundFile, IngestError, Skipped, discover, read_source
 
     by_path: dict[str, list[Diagnostic]] = defaultdict(list)
     for one in checked:
@@ -40,7 +40,7 @@ def fix_files(
     is_changed = False
     with as_input_errors(IngestError):
         for found in discover(paths):
-            if not isinstance(found, Found) or leaves_out(found):
+            if not isinstance(found, FoundFile) or leaves_out(found):
                 continue
             file = read_source(found)
             if isinstance(file, Skipped):

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from grammar.semantics.project_grouping import projects_of
-from support.files.discovery import Found
+from support.files.discovery import FoundFile
 
 #: Paths of files, and the routine that each calls; the sets are the projects.
 PROJECTS = {
@@ -40,7 +40,7 @@ PROJECTS = {
 
 
 def _projects(folder: Path, files: Iterable[str]) -> list[list[str]]:
-    found = [Found(f"cell/{path}", "", 0, folder / path, None) for path in files]
+    found = [FoundFile(f"cell/{path}", "", 0, folder / path, None) for path in files]
     return [[one.path.removeprefix("cell/") for one in some] for _, _, some in projects_of(found)]
 
 

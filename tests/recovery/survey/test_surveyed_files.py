@@ -10,7 +10,7 @@ import pytest
 from grammar.notation import g4
 from recovery.survey.failing_line import FailingLine
 from recovery.survey.survey import survey
-from support.files.discovery import Found
+from support.files.discovery import FoundFile
 
 PRELIMINARY = g4.read_file(Path(g4.__file__).parents[1].joinpath("preliminary.g4"))
 
@@ -31,7 +31,7 @@ def test_files_that_parse_are_not_kept_in_memory(tmp_path: Path) -> None:
     assert 51 == len(found.files)
     assert ["bad.src"] == [file.found.file.name for file in found.failing]
     gc.collect()
-    assert 1 == sum(isinstance(one, Found) for one in gc.get_objects())
+    assert 1 == sum(isinstance(one, FoundFile) for one in gc.get_objects())
 
 
 def test_failing_lines_are_not_kept_in_memory(tmp_path: Path) -> None:

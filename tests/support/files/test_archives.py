@@ -16,7 +16,7 @@ import pytest
 
 from support.files import archives
 from support.files.archives import close_archives
-from support.files.discovery import Found, IngestError, Skipped, discover, read
+from support.files.discovery import FoundFile, IngestError, Skipped, discover, read
 
 A = b"DEF A()\nEND\n"
 B = b"DEF B()\nEND\n"
@@ -53,7 +53,7 @@ def survey(root: Path) -> dict[str, bytes | str]:
     """Map each path below `root` to what it holds or to why it was skipped."""
     result: dict[str, bytes | str] = {}
     for item in discover([root]):
-        outcome = read(item) if isinstance(item, Found) else item
+        outcome = read(item) if isinstance(item, FoundFile) else item
         assert item.path not in result
         result[item.path] = outcome.reason if isinstance(outcome, Skipped) else outcome
     return {path.removeprefix(f"{root.as_posix()}/"): what for path, what in result.items()}
@@ -78,7 +78,7 @@ def test_members_are_found_with_path_size_and_origin(tmp_path: Path) -> None:
     """A member's path goes on from the archive's; its origin is the archive."""
     file = archive_at(tmp_path, ("KRC/R1/Program/a.SRC", A), ("am.ini", b"x"), ("KRC/R1/", b""))
     path = f"{file.as_posix()}/KRC/R1/Program/a.SRC"
-    expected = [Found(path, "backup", len(A), file.resolve(), "0")]
+    expected = [FoundFile(path, "backup", len(A), file.resolve(), "0")]
     assert expected == list(discover([file]))
 
 
@@ -254,7 +254,7 @@ def test_a_size_claimed_too_small_is_found(tmp_path: Path) -> None:
 
 
 def test_a_size_claimed_too_large_does_no_harm(tmp_path: Path) -> None:
-    """What is there is read; the claim only shows in `Found.size`."""
+    """What is there is read; the claim only shows in `FoundFile.size`."""
     (tmp_path / "backup.zip").write_bytes(with_claimed_size(5000))
     assert {"a.src": A} == survey_folder(tmp_path)
 
@@ -398,7 +398,7 @@ def test_archives_stay_open_between_reads(tmp_path: Path) -> None:
     """Reading many members opens their archive once, and only a few archives stay open."""
     for number in range(8):
         (tmp_path / f"{number}.zip").write_bytes(packed(("a.src", A), ("b.src", B)))
-    found = [item for item in discover([tmp_path]) if isinstance(item, Found)]
+    found = [item for item in discover([tmp_path]) if isinstance(item, FoundFile)]
     opened = []
     for item in found:
         read(item)
@@ -411,7 +411,7 @@ def test_archives_stay_open_between_reads(tmp_path: Path) -> None:
 def test_a_changed_archive_is_noticed(tmp_path: Path) -> None:
     """When the archive changes after it was listed, what is read is new or refused, never mixed."""
     file = archive_at(tmp_path, ("a.src", A), ("b.src", B))
-    found = [item for item in discover([file]) if isinstance(item, Found)]
+    found = [item for item in discover([file]) if isinstance(item, FoundFile)]
     assert [read(item) for item in found] == [A, B]
     file.write_bytes(packed(("a.src", A + B)))
     reasons = [what.reason for what in map(read, found) if isinstance(what, Skipped)]
@@ -423,7 +423,7 @@ def test_a_vanished_archive_is_skipped(tmp_path: Path) -> None:
     file = archive_at(tmp_path, ("a.src", A))
     (found,) = discover([file])
     file.unlink()
-    assert isinstance(found, Found)
+    assert isinstance(found, FoundFile)
     outcome = read(found)
     assert isinstance(outcome, Skipped)
     assert outcome.reason.startswith("cannot be read: ")
@@ -433,16 +433,16 @@ def test_a_vanished_archive_is_skipped(tmp_path: Path) -> None:
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")  # forking is what we test
 @pytest.mark.parametrize("method", sorted({"spawn", "fork"} & {*get_all_start_methods()}))
 def test_members_are_read_in_other_processes(tmp_path: Path, method: str) -> None:
-    """A Found goes to another process and is read there, also when the archive is open here."""
+    """A file that was found is read in another process, also when its archive is open here."""
     contents = [b"DEF A()\n;%d\nEND\n" % number * 50 for number in range(40)]
     file = archive_at(tmp_path, *[(f"{i:02}.src", data) for i, data in enumerate(contents)])
-    found = [item for item in discover([file]) if isinstance(item, Found)]
+    found = [item for item in discover([file]) if isinstance(item, FoundFile)]
     assert contents[0] == read(found[0])
     with ProcessPoolExecutor(2, get_context(method)) as pool:
         assert contents == list(pool.map(read, found))
 
 
-def opened_by(found: Found) -> tuple[int, int]:
+def opened_by(found: FoundFile) -> tuple[int, int]:
     """Read, and say in which process and by which process the archive was opened."""
     read(found)
     return os.getpid(), next(reversed(archives._open))[0]
@@ -453,7 +453,7 @@ def opened_by(found: Found) -> tuple[int, int]:
 def test_a_forked_process_opens_archives_itself(tmp_path: Path) -> None:
     """What is open at a fork is not used by the child: both would move one file position."""
     (found,) = discover([archive_at(tmp_path, ("a.src", A))])
-    assert isinstance(found, Found)
+    assert isinstance(found, FoundFile)
     parent, opener = opened_by(found)
     assert parent == opener
     with get_context("fork").Pool(1) as pool:
@@ -468,7 +468,7 @@ def test_members_are_read_by_many_threads(tmp_path: Path) -> None:
     for name in "abcdef":
         members = [(f"{i:02}.src", data) for i, data in enumerate(contents)]
         (tmp_path / f"{name}.zip").write_bytes(packed(*members))
-    found = [item for item in discover([tmp_path]) if isinstance(item, Found)]
+    found = [item for item in discover([tmp_path]) if isinstance(item, FoundFile)]
     shuffled = sorted(found, key=lambda item: (item.member, item.path))
     with ThreadPoolExecutor(4) as pool:
         outcomes = dict(zip(shuffled, pool.map(read, shuffled), strict=True))

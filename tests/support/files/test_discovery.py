@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from support.files import archives, discovery
-from support.files.discovery import Found, IngestError, Skipped, discover, read
+from support.files.discovery import FoundFile, IngestError, Skipped, discover, read
 
 PROGRAM = b"DEF A()\nEND\n"
 
@@ -40,7 +40,7 @@ def lay(root: Path, *names: str) -> Path:
 def shown(*roots: Path) -> list[str]:
     """Return the paths found below `roots`; none may be skipped."""
     found = list(discover(roots))
-    assert all(isinstance(item, Found) for item in found), found
+    assert all(isinstance(item, FoundFile) for item in found), found
     return [item.path for item in found]
 
 
@@ -76,10 +76,10 @@ def test_candidates_are_known_by_their_suffix(tmp_path: Path) -> None:
 
 
 def test_what_is_found_is_complete(tmp_path: Path) -> None:
-    """A Found names path, origin, size in bytes and the file, absolute whatever the root was."""
+    """A file has path, origin, size in bytes and its file, absolute whatever the root was."""
     lay(tmp_path, "cell/a.src")
     file = tmp_path / "cell" / "a.src"
-    expected = Found(file.as_posix(), "cell", len(PROGRAM), file.resolve(), None)
+    expected = FoundFile(file.as_posix(), "cell", len(PROGRAM), file.resolve(), None)
     assert [expected] == list(discover([tmp_path]))
     assert expected == pickle.loads(pickle.dumps(expected))
     assert PROGRAM == read(expected)
@@ -188,7 +188,7 @@ def test_the_order_of_roots_does_not_matter(tree: Path, order: tuple[list[str], 
     """The same places named in any order give the same, and each file once."""
     first, second = (list(discover([tree / place for place in places])) for places in order)
     assert first == second
-    files = [(item.file, item.member) for item in first if isinstance(item, Found)]
+    files = [(item.file, item.member) for item in first if isinstance(item, FoundFile)]
     assert len(set(files)) == len(files) == len(first)
 
 
@@ -319,7 +319,7 @@ def test_links_are_not_followed(tmp_path: Path) -> None:
     link(root / "broken.txt", tmp_path / "nowhere")
     reason = "symbolic link, not followed"
     assert {"up": reason, "linked.src": reason, "broken.dat": reason} == skipped(root)
-    assert ["a.src"] == [i.path[-5:] for i in discover([root]) if isinstance(i, Found)]
+    assert ["a.src"] == [i.path[-5:] for i in discover([root]) if isinstance(i, FoundFile)]
 
 
 def test_a_root_may_be_a_link(tmp_path: Path) -> None:
@@ -334,7 +334,9 @@ def test_a_folder_with_the_name_of_a_file(tmp_path: Path) -> None:
     """A folder named like a program is reported, and what it holds is found."""
     lay(tmp_path, "x.src/y.src")
     assert {"x.src": "a folder, not a file"} == skipped(tmp_path)
-    assert [f.path[-11:] for f in discover([tmp_path]) if isinstance(f, Found)] == ["x.src/y.src"]
+    assert [f.path[-11:] for f in discover([tmp_path]) if isinstance(f, FoundFile)] == [
+        "x.src/y.src"
+    ]
 
 
 @posix_only
@@ -342,7 +344,7 @@ def test_pipes_are_not_opened(tmp_path: Path) -> None:
     """A pipe is skipped without waiting for somebody to write to it, also when read later."""
     lay(tmp_path, "a.src")
     (found,) = discover([tmp_path])
-    assert isinstance(found, Found)
+    assert isinstance(found, FoundFile)
     os.mkfifo(tmp_path / "p.src")
     os.mkfifo(tmp_path / "p.zip")
     reason = "not a regular file"
@@ -362,7 +364,7 @@ def test_what_may_not_be_read_is_skipped(tmp_path: Path) -> None:
     (tmp_path / "closed").chmod(0)
     try:
         found, closed = discover([tmp_path])
-        assert isinstance(found, Found)
+        assert isinstance(found, FoundFile)
         assert isinstance(closed, Skipped)
         assert isinstance(read(found), Skipped)
         assert closed.reason == "folder cannot be read: Permission denied"
@@ -376,7 +378,7 @@ def test_an_unreadable_folder_is_skipped(tmp_path: Path, monkeypatch: pytest.Mon
     lay(tmp_path, "a/b.src", "c.src")
     refuse(monkeypatch, tmp_path / "a")
     (closed, found) = discover([tmp_path])
-    assert isinstance(found, Found)
+    assert isinstance(found, FoundFile)
     reason = "folder cannot be read: Permission denied"
     assert Skipped(f"{tmp_path.as_posix()}/a", reason, tmp_path.name) == closed
 
@@ -403,7 +405,7 @@ def refuse(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
 def test_a_vanished_file_is_skipped(tmp_path: Path) -> None:
     """A file that is gone when it is to be read is skipped, and nothing is raised."""
     (found,) = discover([lay(tmp_path / "cell", "a.src")])
-    assert isinstance(found, Found)
+    assert isinstance(found, FoundFile)
     found.file.unlink()
     outcome = read(found)
     assert isinstance(outcome, Skipped)
@@ -418,7 +420,7 @@ def test_a_huge_file_is_skipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     (tmp_path / "b.src").write_bytes(bytes(archives.MB + 1))
     assert {"b.src": "larger than 1 MB"} == skipped(tmp_path)
     found = next(discover([tmp_path]))
-    assert isinstance(found, Found)
+    assert isinstance(found, FoundFile)
     (tmp_path / "a.src").write_bytes(bytes(archives.MB + 1))
     assert Skipped(found.path, "larger than 1 MB", found.origin) == read(found)
     (tmp_path / "a.src").write_bytes(bytes(archives.MB))
@@ -437,7 +439,7 @@ def test_names_are_shown_without_their_power(tmp_path: Path) -> None:
     except OSError:
         pytest.skip("the file system wants UTF-8")
     (found,) = discover([tmp_path])
-    assert isinstance(found, Found)
+    assert isinstance(found, FoundFile)
     assert found.path.endswith("/a\\x1b[2J\\x0a/\\xfc.src")
     assert found.origin == "a\\x1b[2J\\x0a"
     assert PROGRAM == read(pickle.loads(pickle.dumps(found)))

@@ -14,7 +14,7 @@ from grammar.check.project.batch import check_paths
 from grammar.check.project.project_check import CheckOptions
 from grammar.check.project.report import CheckReport
 from grammar.diagnostics.diagnostic import Diagnostic
-from support.files.discovery import Found, IngestError, Skipped, read
+from support.files.discovery import FoundFile, IngestError, Skipped, read
 
 CELL = Path(__file__).parents[4] / "corpus" / "programs" / "search_demo"
 CALLER = "DEF CALLER()\nSHIFT(5)\nEXIT\nEND\n"
@@ -259,7 +259,7 @@ def test_a_project_is_done_before_the_next_is_read(
         lay(tmp_path / "all" / name / "KRC" / "R1" / "Program", SHIFT__src=CALLED)
     events: list[str] = []
 
-    def reading(found: Found) -> bytes | Skipped:
+    def reading(found: FoundFile) -> bytes | Skipped:
         events.append("read")
         return read(found)
 
