@@ -12,7 +12,7 @@ from grammar.check.analysis.context import Context, RoutineBody
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.motion_kinds import WITHOUT_PATH
 from grammar.semantics.predefined import is_priority
-from grammar.semantics.symbols import Access
+from grammar.semantics.symbols import Access, Kind
 from grammar.syntax import ast
 from grammar.syntax.walk import root_variable, walk
 
@@ -156,9 +156,13 @@ _ELSEWHERE = frozenset((
 
 
 def _is_local(context: Context, variable: ast.Variable) -> bool:
-    """Return whether a variable is local to its routine."""
+    """Return whether a variable is local data of its routine; a signal has no data of its own."""
     found = context.found(variable.name)
-    return found is not None and found.symbol.access is Access.ROUTINE
+    return (
+        found is not None
+        and found.symbol.access is Access.ROUTINE
+        and found.symbol.kind is not Kind.SIGNAL
+    )
 
 
 def _cyclical_flag(context: Context, node: ast.Assignment) -> Iterator[Diagnostic]:
