@@ -18,9 +18,12 @@ from grammar.parser.recognizer import Recognizer
 from recovery.ledger.construct import Construct, LedgerError
 from recovery.ledger.construct_file import read
 from support.files.atomic_write import JournalError, finish
+from support.files.kept_values import kept
 
 #: The journal in the ledger's folder with which a killed acceptance is completed.
 UNFINISHED = ".unfinished.json"
+#: What a replay is computed with.
+_CODE = ("grammar.notation", "recovery.ledger")
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,14 +111,18 @@ def replay(
 ) -> list[tuple[Construct, Grammar]]:
     """Return each construct with the grammar after it, whose text is exact to the byte.
 
-    Raises `LedgerError` if an edit does not fit or the result is not well-formed.
+    A replay that was made before comes from the cache (`support.files.kept_values`). Raises
+    `LedgerError` if an edit does not fit or the result is not well-formed.
     """
-    out = []
-    grammar = preliminary
+    edits = (repr(one.edits) for one in constructs)
+    made = kept(_CODE, (preliminary.text, *edits), lambda: list(_replayed(preliminary, constructs)))
+    return list(zip(constructs, made, strict=True))
+
+
+def _replayed(grammar: Grammar, constructs: Sequence[Construct]) -> Iterator[Grammar]:
     for construct in constructs:
         grammar = grown(grammar, construct)
-        out.append((construct, grammar))
-    return out
+        yield grammar
 
 
 def in_force(preliminary: Grammar, constructs: Sequence[Construct]) -> Grammar:
