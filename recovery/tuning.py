@@ -379,9 +379,6 @@ SHORT_LIST_EXAMPLES = 12
 ITEMS_BEHIND_THE_FIRST = 2
 #: Elements in a row that may be missing together. Not measured.
 MISSING_RUN = 3
-#: How often a word stands behind the first word of a line, as a share of how often it begins one,
-#: from which on it is no statement of its own. Not measured.
-INNER_SHARE = 0.1
 #: Alternatives from which on a rule of words is the list of all of them. Not measured.
 WORD_LIST_ALTERNATIVES = 8
 #: What a level counts by which operators bind weaker than they need, in symbols, and by how many a

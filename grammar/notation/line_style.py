@@ -16,9 +16,11 @@ from grammar.notation.model import (
     Element,
     Grammar,
     Group,
+    Literal,
     Reference,
     Repeat,
     Rule,
+    characters_of,
     walk,
 )
 from grammar.notation.splices import Splice, spliced
@@ -35,6 +37,26 @@ def with_ends_of_lines(grammar: Grammar) -> str:
             changed[rule.name] += ((*e.span, name) for e in ends)
         place = len(last.text)
         changed[last.name].append((place, place, f"\n\n{name}\n    : {token}+\n    ;"))
+    return spliced(grammar, changed)
+
+
+def with_lines_of_rows(grammar: Grammar) -> str:
+    """Return the text with a rule for what a line of a row has, if that is several elements."""
+    changed: dict[str, list[Splice]] = defaultdict(list)
+    names: list[str] = []
+    for rule in grammar.parser_rules:
+        for element in walk(rule):
+            match element:
+                case Repeat(
+                    item=Group(
+                        alternatives=(Alternative(elements=(first, *_, last, end)) as line,)
+                    ),
+                    operator="*" | "+",
+                ) if next((e for e in walk(line) if _is_end(grammar, e)), None) == end:
+                    names.append(_fresh(grammar, f"{rule.name}Entry", names))
+                    start, stop, place = first.span[0], last.span[1], len(rule.text)
+                    text = f"\n\n{names[-1]}\n    : {rule.text[start:stop]}\n    ;"
+                    changed[rule.name] += [(start, stop, names[-1]), (place, place, text)]
     return spliced(grammar, changed)
 
 
@@ -87,15 +109,21 @@ def _has_lines(grammar: Grammar, rule: Rule) -> bool:
 
 
 def _is_end(grammar: Grammar, element: Element) -> bool:
-    """Return whether an element is one token that is no word, once or more, or such a rule."""
+    """Return whether an element is the token of line ends, once or more, or such a rule."""
     match element:
         case Reference(name=name, is_token=False):
             elements = [e for a in grammar.by_name[name].alternatives for e in a.elements]
             return len(elements) == 1 and _repeated(elements[0]) != ""
         case Reference(name=name) | Repeat(item=Reference(name=name, is_token=True), operator="+"):
-            is_word = any(n == name and text.strip() for text, n in grammar.literal_tokens.items())
-            return name != "EOF" and not is_word
+            return name in grammar.by_name and _has_line_end(grammar.by_name[name])
     return False
+
+
+def _has_line_end(rule: Rule) -> bool:
+    """Return whether a token may have the end of a line in it."""
+    texts = (e.text for e in walk(rule) if isinstance(e, Literal))
+    ranges = (pair for e in walk(rule) for pair in characters_of(e) or ())
+    return any("\n" in text for text in texts) or any(a <= ord("\n") <= b for a, b in ranges)
 
 
 def _repeated(element: Element) -> str:

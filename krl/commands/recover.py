@@ -48,7 +48,7 @@ def recover(
     strict: bool = False,
     auto: bool = False,
     without: Annotated[int, typer.Option(min=0)] = 0,
-    hold_out: Annotated[float | None, typer.Option(metavar="FRACTION")] = None,
+    hold_out: Annotated[float | None, typer.Option(metavar="PART")] = None,
     seed: int | None = None,
     target: Path | None = None,
     suffix: Annotated[str, typer.Option(metavar=".EXT")] = "",
@@ -67,7 +67,8 @@ def recover(
         strict: Exit with status 1 if a file does not parse.
         auto: Infer a grammar automatically, from preliminary.g4 or FILE.
         without: With --auto: start from the current grammar without N constructs, drawn by --seed.
-        hold_out: With --auto: share of origins used only to measure; default: 0.
+        hold_out: With --auto: share of origins used only to measure, or how many files at least;
+            default: 0.
         seed: With --auto: seed of what is held out or removed; default: 1.
         target: With --auto: compare the result with this .g4.
         suffix: With --auto --grammar FILE: file name suffix of a language other than KRL.

@@ -58,8 +58,9 @@ class AutoOptions:
             )
         if self.without and (self.grammar or self.is_continued):
             raise InputError("--without starts from the grammar in force: give it alone")
-        if not 0 <= (self.hold_out or 0) < 1:
-            raise InputError(f"--hold-out {self.hold_out:g}: not from 0 to less than 1")
+        part = self.hold_out or 0
+        if part < 0 or 1 <= part < 2:
+            raise InputError(f"--hold-out {part:g}: neither a share below 1 nor a number of files")
 
 
 def recover_auto(roots: Sequence[Path], options: AutoOptions) -> int:

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Sequence
 from functools import cache
 from typing import Protocol
 
-from grammar.notation.edits import Edit
+from grammar.notation.edits import AddRule, AddToken, Edit, Insert
 from grammar.notation.model import Grammar
 from grammar.parser.failures import Form
 from grammar.parser.lexer import EOF, SKIPPED
 from grammar.parser.recognizer import Recognizer
 from recovery.clustering.edit_trial import EditTrial
+from recovery.forms.parts import parts, unwrapped
 from recovery.negatives.generate import generate
 from recovery.negatives.negatives import Negative, NegativeSet
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import GENERATED_NEGATIVES, NEGATIVES_SEED
 
+# A part of a text that is one token, and always there.
+_TOKEN = re.compile(r"'.+'|[A-Z_][A-Z0-9_]*")
 #: Edits that compete with others for the same lines.
 Rivals = Collection[tuple[Edit, ...]]
 
@@ -50,8 +54,16 @@ def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> Negativ
     programs = [_as_line(recognizer, negative.text) for negative in rejected]
     trial = EditTrial(recognizer, programs)
 
+    spelled = recognizer.lexer.spelled
+    tokens = [
+        {*(spelled(kind) for kind in p.form.kinds if kind > 0), *(word for _, word in p.keywords)}
+        for p in programs
+    ]
+
     def accepted(edits: Sequence[Edit]) -> frozenset[int]:
-        return trial.result(edits).mended
+        needed = {_needed(edit) for edit in edits if not isinstance(edit, AddToken)}
+        having = (n for n, some in enumerate(tokens) if any(few <= some for few in needed))
+        return trial.result(edits, having).mended
 
     def is_read(number: int, failed: int | None) -> bool:
         """Return whether a program is read beyond the line at which it fails."""
@@ -65,6 +77,14 @@ def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> Negativ
         return len(own) + sum(is_read(number, failed) for number, failed in read)
 
     return count_negatives
+
+
+def _needed(edit: Edit) -> frozenset[str]:
+    """Return the tokens that an edit writes plainly: whatever it lets be read has them."""
+    pieces = [] if isinstance(edit, AddRule) else parts(getattr(edit, "text", ""))
+    if isinstance(edit, Insert) and len(pieces) == 1:
+        pieces = parts(unwrapped(pieces[0]))
+    return frozenset() if "|" in pieces else frozenset(filter(_TOKEN.fullmatch, pieces))
 
 
 def _as_line(recognizer: Recognizer, text: str) -> LinePattern:

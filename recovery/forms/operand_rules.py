@@ -140,7 +140,7 @@ class OperandRules:
     def alone(self, name: str) -> Iterator[str]:
         """Rules that a rule may consist of, nothing beside them."""
         for alternative in self.grammar.by_name[name].alternatives:
-            needed = [e for e in alternative.elements if not _is_optional(e)]
+            needed = [e for e in alternative.elements if not is_optional(e)]
             if len(needed) == 1 and isinstance(needed[0], Reference) and not needed[0].is_token:
                 yield needed[0].name
 
@@ -272,7 +272,8 @@ class OperandRules:
         return frozenset(found)
 
 
-def _is_optional(element: Element) -> bool:
+def is_optional(element: Element) -> bool:
+    """Return whether an element may be missing."""
     return isinstance(element, Repeat) and element.operator != "+"
 
 

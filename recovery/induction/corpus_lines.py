@@ -4,20 +4,29 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
-from functools import cached_property
 from random import Random
 
 from grammar.parser.lexer import Lexer
 from recovery.induction.language import CorpusFile
 from recovery.proposals.blocks import lines_of
-from recovery.tuning import INNER_SHARE
 
 
-def drawn_origins(files: Sequence[CorpusFile], fraction: float, seed: int) -> tuple[str, ...]:
-    """Return the origins to hold out, drawn by a seed and sorted."""
-    origins = sorted({origin for file in files for origin in file.origins})
+def drawn_origins(files: Sequence[CorpusFile], part: float, seed: int) -> tuple[str, ...]:
+    """Return the origins to hold out, drawn by a seed and sorted.
+
+    ``part`` is a share of the origins, or from 1 on how many files to hold out at least.
+    """
+    sizes = Counter(origin for file in files for origin in file.origins)
+    origins = sorted(sizes)
     Random(seed).shuffle(origins)
-    return tuple(sorted(origins[: round(len(origins) * fraction)]))
+    held = origins[: round(len(origins) * part)] if part < 1 else []
+    left = len(files) - part
+    for origin in origins if part >= 1 else ():
+        if sizes[origin] > left:
+            held.append(origin)
+        else:
+            left -= sizes[origin]
+    return tuple(sorted(held))
 
 
 def held_out(
@@ -60,10 +69,3 @@ class CorpusLines:
             frozenset[str]().union(*(files[place].origins for place in having[n]))
             for n in range(len(self.lines))
         ]
-
-    @cached_property
-    def inner_words(self) -> frozenset[str]:
-        """Lexemes that often stand behind the first one of a line, as names of types do."""
-        first = Counter(line[0] for line in self.lines)
-        later = Counter(word for line in self.lines for word in line[1:])
-        return frozenset(word for word in first if later[word] >= INNER_SHARE * first[word])

@@ -16,7 +16,6 @@ from recovery.induction.language import CorpusFile
 from recovery.ledger.construct import Evidence
 from recovery.proposals.edit_site import LinePattern
 from recovery.tuning import (
-    LEAST_FILES_ALONE,
     PLACES_IN_ONE_FILE,
     PLACES_REMEMBERED,
     PLACES_SHOWN,
@@ -90,16 +89,6 @@ class FailingLines:
     def distinct(self, lines: Collection[int]) -> int:
         """Return how many different texts these lines have."""
         return len({text for n in lines for text in self.occurrences[n].texts})
-
-    def has_rare_word(self, lines: Collection[int], edits: Sequence[Edit]) -> bool:
-        """Return whether edits reserve a word that only one file has in these lines."""
-        some = [self.occurrences[n] for n in lines]
-        return any(
-            len({p for line in some if any(edit.name in t for t in line.texts) for p in line.files})
-            < LEAST_FILES_ALONE
-            for edit in edits
-            if isinstance(edit, AddToken)
-        )
 
     def have_one_word(self, lines: Set[int]) -> bool:
         """Return whether lines fail at a name behind another one, and it is the same in all."""

@@ -32,6 +32,7 @@ from recovery.induction.folds_of_declarations import (
 from recovery.induction.folds_of_operands import (
     any_operands,
     behind_signs,
+    heads_of_blocks,
     named_arguments,
     signs,
     trailing,
@@ -60,6 +61,7 @@ FOLDS: tuple[Callable[[GrammarView], Iterator[InferredStep]], ...] = (
     behind_signs,
     variables,
     any_operands,
+    heads_of_blocks,
     derived_words,
     named_arguments,
 )

@@ -20,8 +20,9 @@ from grammar.notation.model import (
     walk,
 )
 from recovery.brackets import BRACKETS
-from recovery.forms.operand_rules import bracket_pairs
-from recovery.induction.grammar_view import GrammarView, Place, is_optional, item_of
+from recovery.forms.operand_rules import bracket_pairs, is_optional
+from recovery.induction.grammar_view import GrammarView, Place, item_of
+from recovery.induction.names_rule import NAMES, with_names
 from recovery.induction.steps import InferredStep
 from recovery.tuning import RULE_SYMBOLS
 
@@ -183,36 +184,36 @@ def undeclared_elsewhere(view: GrammarView) -> Iterator[InferredStep]:
 def types(view: GrammarView) -> Iterator[InferredStep]:
     """Yield any type behind other words, where a line that begins with the same word has any.
 
-    Only with that word: without it, lines may have fewer types. What follows has to be alike.
+    Only with that word: without it, lines may have fewer types. What follows has to be alike. Of
+    two names side by side the first is such a type.
     """
-    for rule in view.grammar.parser_rules:
-        wide: dict[tuple[str, str], str] = {}  # rules of types by first words and what follows
-        narrow: list[tuple[int, Sequence[Element], Element, str]] = []
-        for number in range(1, 1 + len(rule.alternatives)):
-            line = view.line(rule.name, number)
-            kinds = (n for n, e in enumerate(line[:-1]) if view.words(e) or view.is_kind(e))
-            place = next((n for n in kinds if view.is_name(line[n + 1])), 0)
-            kind, behind = line[place : place + 1], view.source(rule.name, line[place + 1 :][:2])
-            match kind:
-                case [Reference(name=name)] if place and name in view.rules.type_rules:
-                    first_words = (e.name for e in walk(line[0]) if isinstance(e, Reference))
-                    wide |= {(word, behind): name for word in first_words}
-                case [element] if place > 1 and all(_modifiers(view, e) for e in line[:place]):
-                    narrow.append((number, line[:place], element, behind))
-        for number, (first, *others), element, behind in narrow:
-            words = _modifiers(view, first)
-            kind_rule = wide.get((min(words), behind)) if len(words) == 1 else None
-            if kind_rule is None or all(map(view.is_ending, others)):
-                continue
-            between = view.source(rule.name, others)
-            text = f"{min(words)} {between} {kind_rule}"
-            if view.is_ending(first):
-                text = f"({text} | {between} {view.source(rule.name, [element])})"
-            known = view.profile.vocabulary.words_of(kind_rule)
-            edits: list[Edit] = [Replace(rule.name, (number, 1), text, len(others) + 2)]
-            edits += (AddAlternative(kind_rule, w) for w in sorted(view.words(element) - known))
-            title = f"any type behind {min(words)} {between} in {rule.name}"
-            yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS)
+    wide: dict[tuple[str, str], str] = {}  # rules of types by first words and what follows
+    narrow: list[tuple[str, int, Sequence[Element], Element, str]] = []
+    for rule, number, line in view.lines():
+        named = [*map(view.is_name, line), False]
+        kinds = (n for n, e in enumerate(line[:-1]) if view.words(e) or view.is_kind(e))
+        place = next((n for n in kinds if named[n + 1] and not named[n + 2]), 0)
+        kind, behind = line[place : place + 1], view.source(rule.name, line[place + 1 :][:2])
+        match kind:
+            case [Reference(name=name)] if place and name in view.rules.type_rules:
+                first_words = (e.name for e in walk(line[0]) if isinstance(e, Reference))
+                wide |= {(word, behind): name for word in first_words}
+            case [element] if place > 1 and all(_modifiers(view, e) for e in line[:place]):
+                narrow.append((rule.name, number, line[:place], element, behind))
+    for rule_name, number, (first, *others), element, behind in narrow:
+        words = _modifiers(view, first)
+        kind_rule = wide.get((min(words), behind)) if len(words) == 1 else None
+        if kind_rule is None or all(map(view.is_ending, others)):
+            continue
+        between = view.source(rule_name, others)
+        text = f"{min(words)} {between} {kind_rule}"
+        if view.is_ending(first):
+            text = f"({text} | {between} {view.source(rule_name, [element])})"
+        known = view.profile.vocabulary.words_of(kind_rule)
+        edits: list[Edit] = [Replace(rule_name, (number, 1), text, len(others) + 2)]
+        edits += (AddAlternative(kind_rule, w) for w in sorted(view.words(element) - known))
+        title = f"any type behind {min(words)} {between} in {rule_name}"
+        yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS)
 
 
 def kinds(view: GrammarView) -> Iterator[InferredStep]:
@@ -233,7 +234,7 @@ def words_of_a_kind(view: GrammarView) -> Iterator[InferredStep]:
 
     A word is of the kind if a name follows wherever it stands, and no operand or bracket follows
     that, and if it is behind the same word as one of the kind, or begins lines of a rule of which
-    most begin so.
+    most begin so. It remains a name, as names are types too and it was one of these.
     """
     if view.kind not in view.grammar.by_name:
         return
@@ -258,10 +259,12 @@ def words_of_a_kind(view: GrammarView) -> Iterator[InferredStep]:
                     else:
                         others.add(word)
                 typed |= {(rule.name, a) for a in ahead if is_typed and is_declared}
-    wide = next(iter(view.rules.type_rules))
     for word in sorted(w for w in found.keys() - others if found[w] & typed):
-        edits = [AddAlternative(name, word) for name in (view.kind, wide)]
-        yield InferredStep(f"{word} as {view.kind}", tuple(edits), (), breadth=RULE_SYMBOLS)
+        rule_of_names = () if view.rules.names else with_names(view.grammar, view.lexer.name).edits
+        more = (AddAlternative(name, word) for name in (view.kind, view.rules.names or NAMES))
+        yield InferredStep(
+            f"{word} as {view.kind}", (*rule_of_names, *more), (), breadth=RULE_SYMBOLS
+        )
 
 
 def _is_declared(view: GrammarView, alternative: Alternative) -> bool:

@@ -145,8 +145,9 @@ def _is_led(view: GrammarView, ahead: Sequence[Element]) -> bool:
 def behind_signs(view: GrammarView) -> Iterator[InferredStep]:
     """Yield the same operands behind a sign such as ``=`` wherever the lines of a rule have it.
 
-    And the same words wherever there is a name or a type ahead of the sign.
+    And the same words wherever there is a name or a type ahead of the sign, also beside a name.
     """
+    names = view.rules.named_words
     found: dict[tuple[str, str], list[Place]] = defaultdict(list)
     for rule, at, element, ahead in view.elements():
         sign = ahead[-1] if ahead else None
@@ -154,16 +155,18 @@ def behind_signs(view: GrammarView) -> Iterator[InferredStep]:
             place = Place(rule.name, at, [element])
             found[rule.name, sign.text].append(place)
             is_named = any(view.is_name(e) or view.is_kind(e) for e in ahead[-2:-1])
-            if is_named and view.words(element) and view.words(element) <= view.reserved:
+            if is_named and view.words(element) and view.words(element) <= view.reserved | names:
                 found["", sign.text].append(place)
     named = view.rules.matcher.rules_for((view.lexer.name_kind,))
     for (rule_name, sign_text), places in found.items():
         contents = [place.elements[0] for place in places]
         if not rule_name:
-            every = sorted(frozenset[str]().union(*map(view.words, contents)))
-            fewer = [p for p in places if len(view.words(p.elements[0])) < len(every)]
+            words = frozenset[str]().union(*map(view.words, contents))
+            every = sorted(words - names)
+            others = [p for p in places if view.words(p.elements[0]) - names < words - names]
             title = f"{', '.join(every)} behind {sign_text}"
-            yield from view.alike(fewer, title, f"({' | '.join(every)})")
+            every += [view.rules.names or view.lexer.name] * (not words.isdisjoint(names))
+            yield from view.alike(others, title, f"({' | '.join(every)})")
         elif all(_is_operand(view, e) for e in contents):
             read = {name for e in contents for name in _any_of(view, e) or ("",)}
             is_any = "" not in read and read & named  # values alone are constants
@@ -171,6 +174,17 @@ def behind_signs(view: GrammarView) -> Iterator[InferredStep]:
             title = f"the same operands behind {sign_text} in {rule_name}"
             if len({view.source(rule_name, [e]) for e in contents}) > 1:
                 yield from view.alike(places, title, form)
+
+
+def closed_choices(view: GrammarView) -> Iterator[InferredStep]:
+    """Yield several words behind a sign without the name beside them: they are all that it has."""
+    for rule, at, element, ahead in view.elements():
+        words = view.words(element) & view.reserved
+        is_named = len(words) > 1 and view.words(element) - words <= view.rules.named_words
+        if is_named and words < view.words(element) and ahead and isinstance(ahead[-1], Literal):
+            text = " | ".join(sorted(words))
+            edit = Replace(rule.name, at, f"({text})")
+            yield InferredStep(f"no name beside {text} in {rule.name}", (edit,), ())
 
 
 def _any_of(view: GrammarView, element: Element) -> frozenset[str]:
@@ -191,8 +205,8 @@ def _is_operand(view: GrammarView, element: Element) -> bool:
         case Group(alternatives=alternatives):
             return all([_is_operand(view, e) for e in a.elements] == [True] for a in alternatives)
         case Reference():
-            lexer = view.lexer
-            return all(lexer.has_value(lexer.kind_of[word]) for word in view.words(element))
+            words, lexer = view.words(element) - view.rules.named_words, view.lexer
+            return all(lexer.has_value(lexer.kind_of[word]) for word in words)
     return False
 
 
@@ -212,6 +226,25 @@ def any_operands(view: GrammarView) -> Iterator[InferredStep]:
     for name, edits in found.items():
         title = f"any operand in {name} in place of variables and values"
         yield InferredStep(title, tuple(edits), (), breadth=RULE_SYMBOLS)
+
+
+def heads_of_blocks(view: GrammarView) -> Iterator[InferredStep]:
+    """Yield any operand for a variable alone behind the first word of a block.
+
+    A block that may be within others declares nothing, so the name is one that is read.
+    """
+    widest, end = view.rules.widest or "", view.profile.line_end
+    read = view.rules.matcher.rules_for((view.lexer.name_kind,)) - {widest}
+    named = {view.lexer.name, *(name for name in read if view.rules.includes(widest, name))}
+    for rule in view.line_rules if widest else ():
+        is_inner = rule.name in view.rules.reaches[rule.name]
+        for number, alternative in enumerate(rule.alternatives if is_inner else (), 1):
+            first, *others = alternative.elements[:3]
+            match [rule.source_of(element) for element in others]:
+                case [operand, last] if operand in named and last == end and view.words(first):
+                    edit = Replace(rule.name, (number, 2), widest)
+                    title = f"any operand behind {rule.source_of(first)}"
+                    yield InferredStep(title, (edit,), (), breadth=RULE_SYMBOLS)
 
 
 def _are_variables_and_values(view: GrammarView, alternatives: Sequence[Alternative]) -> bool:

@@ -17,7 +17,7 @@ from grammar.notation.edits import Insert, Replace
 from grammar.notation.model import Alternative, Element, Group, Literal, Reference, Repeat, Rule
 from grammar.parser.recognizer import Recognizer
 from recovery.forms.loose import is_loose
-from recovery.forms.operand_rules import OperandRules
+from recovery.forms.operand_rules import OperandRules, is_optional
 from recovery.forms.samples import samples_of
 from recovery.forms.symbol_reader import SymbolReader
 from recovery.forms.symbols import Symbol
@@ -189,11 +189,6 @@ class GrammarView:
         some = list(shapes)
         form = self.writer.form(some)
         return None if form and is_loose(form, some, counts_words=True) else form
-
-
-def is_optional(element: Element) -> bool:
-    """Return whether an element may be missing."""
-    return isinstance(element, Repeat) and element.operator != "+"
 
 
 def item_of(element: Element) -> tuple[Element, str]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from grammar.notation.addresses import Address
 from grammar.notation.edits import AddAlternative, Insert, MakeOptional, Replace
 from grammar.notation.model import Element, Repeat
+from recovery.forms.operand_rules import is_optional
 from recovery.forms.samples import samples_of
 from recovery.forms.symbols import Symbol
 from recovery.induction.inferred_keywords import InferredKeywords
@@ -17,7 +18,6 @@ from recovery.induction.line_symbols import WORD, LineSymbols
 from recovery.induction.steps import InferredStep
 from recovery.induction.supported_forms import SupportedForms, optional
 from recovery.proposals.edit_site import places_of
-from recovery.tuning import SEVERAL
 
 
 class LineEdits:
@@ -36,8 +36,6 @@ class LineEdits:
         self.forms = forms
         self.hosts = hosts
         self._prefixes = keywords.prefixes
-        # words that often follow another one, as those of types do
-        self._types = at.rules.type_words | keywords.corpus.inner_words
         self._block_words = block_words
         self.symbols = [at.known_groups(symbols) for symbols in at.symbols]
 
@@ -103,10 +101,8 @@ class LineEdits:
                 head += " …"  # lines of this kind are known where it stands, and not elsewhere
             if self._block_words.isdisjoint(s.text for s in symbols[:2]):
                 groups[self.hosts.of(number), head].append(number)
-        families = list(self._families(groups))
-        for (hosts, head), members in families:
+        for (hosts, head), members in self._families(groups):
             yield from self._statement(hosts, head, members)
-        yield from self._of_many_words(families)
 
     def _families(
         self, groups: dict[tuple[tuple[str, ...], str], list[int]]
@@ -128,45 +124,6 @@ class LineEdits:
         order = {host: place for hosts, _ in groups for place, host in enumerate(hosts)}
         for left, head, gathered, _ in done:
             yield (tuple(sorted(left, key=lambda h: (order[h], h))), head), gathered
-
-    def _of_many_words(
-        self, families: Sequence[tuple[tuple[tuple[str, ...], str], list[int]]]
-    ) -> Iterator[InferredStep]:
-        """Return one form for lines that begin with different words and continue alike."""
-        gathered: dict[tuple[str, ...], list[tuple[str, list[int], set[tuple[str, ...]]]]]
-        gathered = defaultdict(list)
-        for (hosts, head), members in families:
-            known = self.hosts.leading.keys() | self.hosts.inner_words
-            if WORD.fullmatch(head) and head not in known:
-                tails = {
-                    tuple(map(self.forms.sort, self.symbols[n][1:]))
-                    for n in members
-                    if self.symbols[n][0].text == head
-                }
-                gathered[hosts].append((head, members, tails))
-        for hosts, heads in gathered.items():
-            # around each word those that have most kinds of tail in common with it
-            # where statements are, words of types are no others
-            types = self._types if self.hosts.has_statements(hosts) else frozenset()
-            for head, _, tails in heads:
-                alike = [
-                    h
-                    for h in heads
-                    if go_on_alike(h[2], tails) and (h[0] in types) == (head in types)
-                ]
-                if len(alike) < SEVERAL:
-                    continue
-                every = tuple(n for _, ns, _ in alike for n in ns)
-                shapes = dict.fromkeys(
-                    self.symbols[n][1:] for n in members if self.symbols[n][0].text in _of(alike)
-                )
-                tail = self.forms.writer.form(list(shapes))
-                for host in hosts if tail else ():
-                    text = f"({' | '.join(sorted(_of(alike)))}) {tail}{self.hosts.ending(host)}"
-                    edits = (*self.forms.reserving(text), AddAlternative(host, text))
-                    yield InferredStep(
-                        f"{head} and {len(alike) - 1} words as {host}", edits, every, is_strict=True
-                    )
 
     def _opened_in_group(self, number: int) -> bool:
         """Return whether a line fails within brackets that a rule of the grammar writes."""
@@ -346,20 +303,3 @@ class LineEdits:
         sites = recognizer.sites(self.at.state(number))
         within = (site for site in sites if recognizer.network.rule[site[0]] == rule)
         return {place for site in within for place in places_of(recognizer, site)}
-
-
-def is_optional(element: Element) -> bool:
-    """Return whether an element may be missing."""
-    return isinstance(element, Repeat) and element.operator == "?"
-
-
-def go_on_alike(some: Set[tuple[str, ...]], others: Set[tuple[str, ...]]) -> bool:
-    """Return whether two words are followed alike: half of the kinds of what follows are the same.
-
-    Nothing is known about a word that always follows another one.
-    """
-    return bool(some and others) and (2 * len(some & others) >= min(len(some), len(others)))
-
-
-def _of(heads: Sequence[tuple[str, list[int], set[tuple[str, ...]]]]) -> list[str]:
-    return [head for head, _, _ in heads]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import cached_property
 
 from grammar.notation.addresses import Address, sequences
@@ -25,11 +25,6 @@ class LineHosts:
             for word in self.words_of(first[0]):
                 found[word] += 1
         return found
-
-    @cached_property
-    def inner_words(self) -> frozenset[str]:
-        """The words with which lines within blocks begin."""
-        return frozenset[str]().union(*(self.words_of(e[0]) for _, _, e in self._inner_lines()))
 
     def _alternatives(self) -> Iterator[tuple[str, int, tuple[Element, ...]]]:
         """Alternatives that may be a line: rule, number, and the elements of the first line."""
@@ -85,10 +80,6 @@ class LineHosts:
             lines = sorted(entered & self.at.profile.choices_of_lines)
             self._hosts_of[before] = tuple(sorted(entered & self._whole_lines) + lines)
         return self._hosts_of[before]
-
-    def has_statements(self, hosts: Sequence[str]) -> bool:
-        """Return whether one of some rules contains whole lines without their ends."""
-        return not self._whole_lines.isdisjoint(hosts)
 
     def ending(self, host: str) -> str:
         """Return the end of an alternative of a rule: a line end, if its alternatives have one."""

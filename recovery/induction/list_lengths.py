@@ -1,7 +1,8 @@
 """Bounds the length of lists that are never long, if there are many examples.
 
 A form is written from failing lines, few of which may contain a list. Therefore this is decided at
-the end, over all files that can be read.
+the end, over all files that can be read. Of what only follows operands, as an index does, a few
+examples are enough: how many items it has belongs to the operand.
 """
 
 from __future__ import annotations
@@ -16,8 +17,9 @@ from grammar.parser.coverage import GrammarCoverage
 from grammar.parser.parse import Parser
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.tree import Tree
+from recovery.forms.operand_rules import OperandRules
 from recovery.induction.steps import InferredStep
-from recovery.tuning import ITEMS_BEHIND_THE_FIRST, SHORT_LIST_EXAMPLES
+from recovery.tuning import ITEMS_BEHIND_THE_FIRST, SEVERAL, SHORT_LIST_EXAMPLES
 
 
 def bounded_lists(
@@ -30,15 +32,17 @@ def bounded_lists(
         tree = parser.parse(text)
         if isinstance(tree, Tree):
             coverage.add(tree)
+    following = frozenset(OperandRules(recognizer).following.values())
     for rule in grammar.parser_rules:
         lengths = _lengths(rule, coverage)
+        enough = SEVERAL if rule.name in following else SHORT_LIST_EXAMPLES
         known = start.by_name[rule.name].text if rule.name in start.by_name else ""
         for address, sequence in reversed([*sequences(rule)]):  # the last first: they stay
             for place, element in reversed([*enumerate(sequence.elements, 1)]):
                 source = rule.source_of(element)
                 rounds = lengths[source]
                 is_short = max(rounds, default=0) <= ITEMS_BEHIND_THE_FIRST
-                is_seen = rounds.total() - rounds[0] >= SHORT_LIST_EXAMPLES
+                is_seen = rounds.total() - rounds[0] >= enough
                 if _is_list(element) and source not in known and is_short and is_seen:
                     text = ""
                     for _ in range(ITEMS_BEHIND_THE_FIRST):

@@ -39,6 +39,7 @@ from recovery.induction.bracket_edits import BracketEdits
 from recovery.induction.corpus_lines import CorpusLines
 from recovery.induction.failing_lines import FailingLines
 from recovery.induction.folding import folds_of, size
+from recovery.induction.folds_of_operands import closed_choices
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.inferred_keywords import InferredKeywords, names_read
 from recovery.induction.language import CorpusFile, Language
@@ -173,9 +174,9 @@ class Induction:
             self._review = EditReview(recognizer, rejected, self._language.reserved_in, texts)
         review = self._review
         if step == "fold":
-            taken, refused = self._folded(review, failures, is_last=least == _LINE)
+            taken, refused = self._folded(review, is_last=least == _LINE)
         elif step == "open":
-            taken, refused = self._opened(review)
+            taken, refused = self._opened(review, failures)
         elif least == _LINE and sum(map(bool, failures)) <= DAMAGED_SHARE * len(failures):
             taken, refused = [], []  # so few files may be damaged
         else:
@@ -329,8 +330,6 @@ class Induction:
             is_odd = table.distinct(lines) < SEVERAL
             if evidence.origins < least[0] or (is_rare and least[1] > 1):
                 reason = _ONE_ORIGIN
-            elif found.is_strict and table.has_rare_word(lines, edits):
-                reason = _FEW_LINES
             elif is_rare and least == _LINE and table.are_misnamed(lines, review.recognizer):
                 reason = "a reserved word stands for a name"
             elif (
@@ -367,15 +366,15 @@ class Induction:
     # ------------------------------------------------------------------------------------- folding
 
     def _folded(
-        self, review: EditReview, failures: Failures, *, is_last: bool
+        self, review: EditReview, *, is_last: bool
     ) -> tuple[list[AcceptedStep], list[RefusedStep]]:
         """Folds after which the grammar is shorter, accepts no more negatives and reads no less.
 
-        Where none is left at the end lists are bounded, for which all has to be read that will be.
+        Where none is left at the end choices are closed.
         """
         before = review
-        recognizer, files = review.recognizer, self.shown.files
-        operands = _operands(recognizer, CorpusLines(files, recognizer.lexer))
+        recognizer = review.recognizer
+        operands = _operands(recognizer, CorpusLines(self.shown.files, recognizer.lexer))
         taken: list[AcceptedStep] = []
         refused: dict[str, RefusedStep] = {}
         had = {recognizer.grammar.sha256}
@@ -404,20 +403,20 @@ class Induction:
             self._lossy.add(lost[0].edits)
             taken = kept[: [step.edits for step in taken].index(lost[0].edits)]
             if not taken:
-                return self._folded(before, failures, is_last=is_last)
+                return self._folded(before, is_last=is_last)
         if is_last and not taken:
-            read = zip(files, failures, strict=True)
-            texts = (file.text for file, wrong in read if not wrong)
-            bounds = [
-                AcceptedStep(bounded.title, bounded.edits)
-                for bounded in bounded_lists(recognizer, self._start, texts)
-                if bounded.edits not in self.struck
-            ]
+            closed = closed_choices(GrammarView(recognizer, operands))
+            bounds = [AcceptedStep(c.title, c.edits) for c in closed if c.edits not in self.struck]
             taken, lost = self.shown.kept(self.grammar, bounds, self._names)
         return taken, [*lost, *refused.values()]
 
-    def _opened(self, review: EditReview) -> tuple[list[AcceptedStep], list[RefusedStep]]:
-        """Return openings that accept hardly any negative and lose no line, and others."""
+    def _opened(
+        self, review: EditReview, failures: Failures
+    ) -> tuple[list[AcceptedStep], list[RefusedStep]]:
+        """Return openings that accept hardly any negative and lose no line, and others.
+
+        Where none is left lists are bounded, for which all has to be read that will be.
+        """
         grammar, lexer = self.grammar, review.recognizer.lexer
         corpus = CorpusLines(self.shown.files, lexer)
         operands = _operands(review.recognizer, corpus)
@@ -447,6 +446,11 @@ class Induction:
                 else:
                     taken.append(AcceptedStep(found.title, found.edits))
                     grammar = wider
+        if not taken:
+            read = zip(self.shown.files, failures, strict=True)
+            texts = (file.text for file, wrong in read if not wrong)
+            bounds = bounded_lists(review.recognizer, self._start, texts)
+            taken = [AcceptedStep(b.title, b.edits) for b in bounds if b.edits not in self.struck]
         kept, lost = self.shown.kept(self.grammar, taken, self._names)
         return kept, [*lost, *refused]
 

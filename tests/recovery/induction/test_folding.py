@@ -19,7 +19,12 @@ from recovery.induction.folds_of_declarations import (
     undeclared_elsewhere,
     words_of_a_kind,
 )
-from recovery.induction.folds_of_operands import any_operands, behind_signs
+from recovery.induction.folds_of_operands import (
+    any_operands,
+    behind_signs,
+    closed_choices,
+    heads_of_blocks,
+)
 from recovery.induction.grammar_view import GrammarView
 from recovery.induction.steps import InferredStep
 
@@ -128,6 +133,7 @@ _KINDS = _GRAMMAR.replace(
 other
     : MOVE (kind NAME index | kind NAME ':' SLOW)
     | TURN NAME (',' NAME)?
+    | SLOW expression
     ;
 
 kindWord : INT | REAL ;
@@ -144,6 +150,7 @@ kindWord : INT | REAL ;
         ("MOVE AXIS A\n", True),
         ("MOVE DIM FRAME A = 1\n", True),
         ("FRAME A\n", True),
+        ("INT FRAME\n", True),
         ("INT A = B\n", True),
         ("INT A : SLOW\n", True),
         ("REAL A[1]\n", True),
@@ -406,15 +413,19 @@ base : INT | REAL ;
 
 
 def test_types_behind_other_words() -> None:
-    """With a word that all types follow any type follows the next word, too; without it none."""
+    """With a word that all types follow any type follows the next word, too; without it none.
+
+    Of two names side by side the first is such a type.
+    """
     grammar = read(_declared(_TYPES))
     folds = list(types(GrammarView(Recognizer(grammar), ())))
     after = Recognizer(apply(grammar, [edit for fold in folds for edit in fold.edits]))
     wider = ("DIM FIX A B\n", "DIM OPEN FIX A B\n", "DIM SLOW A B\n", "DIM TURN B\n")
+    wider += ("DIM FAST TURN INT B\n",)
     same = ("FIX INT B\n", "OPEN FIX INT B\n", "DIM FIX INT B\n", "DIM SLOW TURN B\n")
     never = ("FIX A B\n", "OPEN FIX A B\n", "MOVE FAST A B\n", "DIM FAST A B C\n", "A B\n")
     assert not any(map(Recognizer(grammar).accepts, wider))
-    assert [True] * 8 + [False] * 5 == list(map(after.accepts, wider + same + never))
+    assert [True] * 9 + [False] * 5 == list(map(after.accepts, wider + same + never))
     assert [] == list(types(GrammarView(after, ())))
 
 
@@ -531,6 +542,29 @@ NUMBER : [0-9]+ ;
 NEWLINE : '\\n' ;
 WS : ' ' -> skip ;
 """
+
+
+@pytest.mark.parametrize(("modes", "accepted"), [("IN", [True, False]), ("IN | OUT", [False] * 2)])
+def test_words_in_place_of_names(modes: str, accepted: list[bool]) -> None:
+    """Words behind a sign may be where lines have a name there; several are all that may be."""
+    text = _blocks().replace("NAME (IN | OUT)", "NAME '-' NAME")
+    text = text.replace("NAME IN", f"NAME '-' ({modes})").replace("PLUS :", "MINUS : '-' ;\nPLUS :")
+    grammar = read(text)
+    for kind in (behind_signs, closed_choices):
+        folds = kind(GrammarView(Recognizer(grammar), ()))
+        grammar = apply(grammar, [edit for fold in folds for edit in fold.edits])
+    recognizer = Recognizer(grammar)
+    assert recognizer.accepts("SUB F(A-IN)\n\n")
+    assert accepted == [recognizer.accepts(f"{w} F(A-B)\n\n") for w in ("SUB", "FUN")]
+
+
+def test_heads_of_blocks() -> None:
+    """A name alone behind the first word of a block is any operand, but not where it has a sign."""
+    grammar = read(_blocks())
+    (fold,) = heads_of_blocks(GrammarView(Recognizer(grammar), ()))
+    after = Recognizer(apply(grammar, fold.edits))
+    texts = ("CASE A + 1\nDONE\n", "CASE A\nDONE\n", "DIM 1 = 1\n\n")
+    assert [True, True, False] == [after.accepts(text) for text in texts]
 
 
 def _blocks() -> str:

@@ -42,6 +42,15 @@ def test_enough_lists(lists: int, count: int) -> None:
     assert count == len(list(edits))
 
 
+@pytest.mark.parametrize(("lists", "count"), [(3, 1), (2, 0)])
+def test_a_list_that_follows_operands(lists: int, count: int) -> None:
+    """A few indices without a fourth item show that none has one."""
+    rules = "program : (any NEWLINE)* EOF ;\nany : NAME index? ;\nindex : '[' any ']' ;\n"
+    start = f"grammar Toy;\n{rules}{_TOKENS}"
+    grown = read(start.replace("any ']'", "any (',' any)* ']'"))
+    assert count == len(list(bounded_lists(Recognizer(grown), read(start), ["A[B,C]\n"] * lists)))
+
+
 @pytest.mark.parametrize(("items", "count"), [("A,B", 2), ("A,B,C,D", 0)])
 def test_lists_of_one_rule(items: str, count: int) -> None:
     """How long the same list is in another alternative of a rule says it of both."""

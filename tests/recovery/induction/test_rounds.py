@@ -131,30 +131,6 @@ def test_the_lines_within_a_block_grow(toy: Grammar) -> None:
     assert [True, False] == [recognizer.accepts(text) for text in texts]
 
 
-def test_words_that_follow_words_are_of_one_kind(toy: Grammar) -> None:
-    """Words of statements share a form; words that are types, as lines elsewhere show, do not."""
-    start = _with(
-        toy,
-        "    | halt\n",
-        "    | halt\n    | DECL NAME NAME\n",
-        "HALT :",
-        "DECL : 'DECL' ;\nHALT :",
-    )
-    texts = (
-        "DECL INT A{0}\nINT B{0}\nGOTO L{0}\nDECL POS P{0}\nPOS Q\nSKIPTO N{0}\nBACKTO O{0}\n",
-        "INT R{0}\nDECL INT S{0}\nBACKTO T\nPOS U\nSKIPTO V{0}\nGOTO W\n",
-    )
-    files = tuple(
-        CorpusFile(f"{origin}/{n}.toy", text.format(origin), frozenset({origin}))
-        for origin in "KLM"
-        for n, text in enumerate(texts)
-    )
-    titles = [construct.title for construct in _grown(start, files).constructs]
-    assert ["GOTO and 2 words as statement", "INT … as statement", "POS … as statement"] == [
-        title for title in titles if title.endswith("as statement")
-    ]
-
-
 def test_the_last_line_of_a_block_is_no_line_of_its_own(toy: Grammar) -> None:
     """Nor is a first line that the grammar cannot read yet: the block has to be there."""
     routines = (
@@ -699,6 +675,14 @@ def test_origins_are_held_out_whole(toy_files: tuple[CorpusFile, ...]) -> None:
     assert (2, 4, 1) == (len(held), len(shown), len(origins))
     assert origins == drawn_origins(toy_files, 1 / 3, 4)
     assert {frozenset(origins)} == {file.origins for file in held}
+
+
+@pytest.mark.parametrize(("least", "held"), [(2, 2), (3, 4), (5, 6)])
+def test_so_many_files_are_held_out_at_least(
+    toy_files: tuple[CorpusFile, ...], least: int, held: int
+) -> None:
+    """Each origin of the toy has two files, and no origin is divided."""
+    assert held == len(held_out(toy_files, drawn_origins(toy_files, least, 4))[1])
 
 
 def test_a_limit_of_rounds_is_no_end(toy: Grammar, toy_files: tuple[CorpusFile, ...]) -> None:
