@@ -178,7 +178,9 @@ def undeclared_elsewhere(view: GrammarView) -> Iterator[InferredStep]:
             end = view.source(host, elements[len(view.line(host, number)) :])
             text = " ".join(filter(None, (ahead, view.kind, behind, end)))
             title = f"{view.kind} without a word ahead in {host}"
-            yield InferredStep(title, (AddAlternative(host, text),), (), breadth=2 * RULE_SYMBOLS)
+            # what it repeats could be a rule of both
+            breadth = 2 * RULE_SYMBOLS + len(behind.split())
+            yield InferredStep(title, (AddAlternative(host, text),), (), breadth=breadth)
 
 
 def types(view: GrammarView) -> Iterator[InferredStep]:

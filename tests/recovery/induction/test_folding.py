@@ -420,8 +420,13 @@ def test_types_behind_other_words() -> None:
     grammar = read(_declared(_TYPES))
     folds = list(types(GrammarView(Recognizer(grammar), ())))
     after = Recognizer(apply(grammar, [edit for fold in folds for edit in fold.edits]))
-    wider = ("DIM FIX A B\n", "DIM OPEN FIX A B\n", "DIM SLOW A B\n", "DIM TURN B\n")
-    wider += ("DIM FAST TURN INT B\n",)
+    wider = (
+        "DIM FIX A B\n",
+        "DIM OPEN FIX A B\n",
+        "DIM SLOW A B\n",
+        "DIM TURN B\n",
+        "DIM FAST TURN INT B\n",
+    )
     same = ("FIX INT B\n", "OPEN FIX INT B\n", "DIM FIX INT B\n", "DIM SLOW TURN B\n")
     never = ("FIX A B\n", "OPEN FIX A B\n", "MOVE FAST A B\n", "DIM FAST A B C\n", "A B\n")
     assert not any(map(Recognizer(grammar).accepts, wider))
