@@ -17,10 +17,10 @@ import struct
 import threading
 import zipfile
 import zlib
-from collections import Counter, OrderedDict
+from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import closing
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import IO
 
@@ -120,7 +120,7 @@ def members(file: Path, wanted: Callable[[str], bool]) -> list[Member]:
     Archives in it are opened too, one level deep. Raises ArchiveError if `file` is not a readable
     archive or has too many members.
     """
-    with closing(_on_disk(file)) as archive:
+    with _on_disk(file) as archive:
         return list(_listed(archive, wanted, _Budget(MAX_MEMBERS, MAX_ARCHIVE_BYTES)))
 
 
@@ -131,7 +131,7 @@ def read(file: Path, address: str, size: int) -> bytes:
     """
     *outer, last = (int(place) for place in address.split("/"))
     with _lock:
-        infos = (archive := _kept(file, outer[0] if outer else None)).infos
+        infos = (archive := _kept(file, outer[0] if outer else None)).infolist()
         if last >= len(infos) or infos[last].file_size != size:
             raise ArchiveError(_CHANGED)
         return archive.content(infos[last])
@@ -140,9 +140,7 @@ def read(file: Path, address: str, size: int) -> bytes:
 def close_archives() -> None:
     """Close the archives that `read` keeps open in this process."""
     with _lock:
-        for archive in _open.values():
-            archive.close()
-        _open.clear()
+        _opened.cache_clear()
 
 
 # -- listing ---------------------------------------------------------------------------------------
@@ -166,13 +164,14 @@ class _Budget:
 def _listed(
     archive: _Archive, wanted: Callable[[str], bool], budget: _Budget, inside: Member | None = None
 ) -> Iterator[Member]:
-    budget.members -= len(archive.infos)
+    infos = archive.infolist()
+    budget.members -= len(infos)
     if budget.members < 0:
         raise ArchiveError(_TOO_MANY)
     prefix, place = (f"{inside.path}/", f"{inside.address}/") if inside else ("", "")
-    overlapping = _overlapping(archive.infos)
-    for path, index in _named(archive.infos, wanted):
-        info = archive.infos[index]
+    overlapping = _overlapping(infos)
+    for path, index in _named(infos, wanted):
+        info = infos[index]
         problem = _OVERLAPPING if index in overlapping else _problem(info)
         problem = problem or budget.spend(info.file_size)
         if problem is None and is_archive(path):
@@ -188,7 +187,7 @@ def _listed(
             yield member
             continue
         try:
-            with closing(archive.inner(info)) as opened:
+            with archive.inner(info) as opened:
                 yield from _listed(opened, wanted, budget, member)
         except ArchiveError as error:
             yield replace(member, problem=str(error))
@@ -268,21 +267,18 @@ class _Stream(io.BufferedReader):
         return super().read(size)
 
 
-class _Archive:
-    """An open archive; `infos` are its members in the order of its directory."""
-
-    __slots__ = ("_stream", "_zip", "infos")
+class _Archive(zipfile.ZipFile):
+    """An open archive; it closes when nothing refers to it."""
 
     def __init__(self, raw: io.RawIOBase | io.BytesIO) -> None:
         self._stream = _Stream(raw)
         try:
-            self._zip = zipfile.ZipFile(self._stream)
+            super().__init__(self._stream)
         except _DAMAGE as error:
             raise ArchiveError(self._close_unopened()) from error
         except ArchiveError:
             self._stream.close()
             raise
-        self.infos = self._zip.infolist()
 
     def _close_unopened(self) -> str:
         """Close the stream, and return why the bytes are no archive."""
@@ -298,7 +294,7 @@ class _Archive:
         if problem := _problem(info):
             raise ArchiveError(problem)
         try:
-            with self._zip.open(info) as stream:
+            with self.open(info) as stream:
                 return read_whole(stream)
         except _DAMAGE as error:
             checksum = str(error).startswith("Bad CRC")
@@ -310,7 +306,7 @@ class _Archive:
         return _Archive(io.BytesIO(self.content(info)))
 
     def close(self) -> None:
-        self._zip.close()
+        super().close()
         self._stream.close()
 
 
@@ -321,9 +317,6 @@ def _on_disk(file: Path) -> _Archive:
         raise ArchiveError(f"cannot be read: {why(error)}") from error
 
 
-# The process ID is part of the key: a forked child shares the file position of open archives.
-_Key = tuple[int, str, int, int, int | None]
-_open: OrderedDict[_Key, _Archive] = OrderedDict()
 _lock = threading.Lock()
 atexit.register(close_archives)
 
@@ -334,18 +327,15 @@ def _kept(file: Path, outer: int | None) -> _Archive:
         state = file.stat()
     except OSError as error:
         raise ArchiveError(f"cannot be read: {why(error)}") from error
-    key = (os.getpid(), str(file), state.st_mtime_ns, state.st_size, outer)
-    if key in _open:
-        _open.move_to_end(key)
-        return _open[key]
+    # the process counts too: a forked child shares the file position of open archives
+    return _opened(file, outer, os.getpid(), state.st_mtime_ns, state.st_size)
+
+
+@lru_cache(maxsize=OPEN_ARCHIVES)
+def _opened(file: Path, outer: int | None, *_state: int) -> _Archive:
     if outer is None:
-        archive = _on_disk(file)
-    else:
-        around = _kept(file, None)
-        if outer >= len(around.infos):
-            raise ArchiveError(_CHANGED)
-        archive = around.inner(around.infos[outer])
-    _open[key] = archive
-    while len(_open) > OPEN_ARCHIVES:
-        _open.popitem(last=False)[1].close()
-    return archive
+        return _on_disk(file)
+    infos = (around := _kept(file, None)).infolist()
+    if outer >= len(infos):
+        raise ArchiveError(_CHANGED)
+    return around.inner(infos[outer])
