@@ -269,7 +269,7 @@ GENERATED_NEGATIVES = 250
 NEGATIVES_SEED = 1
 
 # -------------------------------------------------------------------------------- joining causes
-# `recovery.clustering.joined_causes`, `edit_merging`, `more_places`, `completion`, `title`.
+# `recovery.clustering.joined_causes`, `edit_merging`, `completion`, `title`.
 
 #: Causes that a later one is compared with: the first ones hold back most. Bound on time.
 MOST_COMPARED = 40

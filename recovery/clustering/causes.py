@@ -5,9 +5,9 @@ for each group, heaviest first, the best edit for its lines is sought
 (`recovery.clustering.search`). It takes every line it repairs, whatever its signature; lines of the
 group that it does not repair are searched again.
 
-At the end, causes that are one are joined (`recovery.clustering.joined_causes`). Where few causes
-are left, their best proposals are completed (`recovery.clustering.completion`), else made in
-further places (`recovery.clustering.more_places`).
+At the end, causes that are one are joined (`recovery.clustering.joined_causes`), and their best
+proposals completed (`recovery.clustering.completion`): where few causes are left with all that
+their lines need, else only in further places.
 """
 
 from __future__ import annotations
@@ -18,10 +18,9 @@ from dataclasses import replace
 from grammar.parser.recognizer import Recognizer
 from recovery import tuning
 from recovery.clustering.cause import Cause
-from recovery.clustering.completion import completed
+from recovery.clustering.completion import completed, with_more_places
 from recovery.clustering.file_trial import FileTrial
 from recovery.clustering.joined_causes import joined
-from recovery.clustering.more_places import with_more_places
 from recovery.clustering.negative_score import NegativeCounter
 from recovery.clustering.reason import Reason
 from recovery.clustering.regression import ParsedFiles, no_parsed_files

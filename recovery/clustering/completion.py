@@ -1,21 +1,27 @@
-"""Completion of a proposal: what its lines still need where it changes the grammar.
+"""Completion of a proposal: what the lines that it leaves still need.
 
 An edit is found by a few lines of a cause. Other lines of it have more parts, another word, or
 another form. So the search goes on under the grammar that the proposal gives, with the lines that
 it leaves: there a line fails inside the text that was added. What is found becomes part of that
-text.
+text (`completed`).
+
+Or the same is missing in further rules: ``GLOBAL`` may come before a routine, an interrupt and a
+declaration. Then the same phrase is sought there, under the grammar itself, which takes less time
+(`with_more_places`).
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import islice, product
 
+from grammar.notation.addresses import element_at
 from grammar.notation.edits import (
     AddAlternative,
+    AddToken,
     Edit,
     EditOfRule,
     Insert,
@@ -84,15 +90,25 @@ def _with_more(
     def share(proposal: Proposal) -> float:
         return search.order.readable_share(proposal.edits, some)
 
-    for _ in range(tuning.MOST_COMPLETIONS):
-        for more in _further(search, proposal, wanted, rules):
-            is_safe = more.accepts_negatives <= proposal.accepts_negatives
-            is_more = more.mended & wanted > proposal.mended & wanted
-            if is_safe and is_more and share(more) >= share(proposal):
-                proposal = more
-                break
-        else:
+    def better(before: Proposal) -> Iterator[Proposal]:
+        for more in _further(search, before, wanted, rules):
+            is_safe = more.accepts_negatives <= before.accepts_negatives
+            is_more = more.mended & wanted > before.mended & wanted
+            if is_safe and is_more and share(more) >= share(before):
+                yield more
+
+    return _grown(proposal, better, tuning.MOST_COMPLETIONS)
+
+
+def _grown(
+    proposal: Proposal, better: Callable[[Proposal], Iterator[Proposal]], most: int
+) -> Proposal:
+    """Return the first ``better`` proposal, the first better one than that, ``most`` times."""
+    for _ in range(most):
+        found = next(better(proposal), None)
+        if found is None:
             break
+        proposal = found
     return proposal
 
 
@@ -132,6 +148,58 @@ def _further(
 def _are_of(rules: frozenset[str], edits: Sequence[Edit]) -> bool:
     """Return whether edits change only these rules, and reserve no word."""
     return rules.issuperset(getattr(edit, "rule", "") for edit in edits)
+
+
+# ------------------------------------------------------------------------------- more places
+
+
+def with_more_places(search: CauseSearch, cause: Cause) -> Cause:
+    """Return the cause with its best proposals made in all places where its lines need them."""
+    first = {proposal.edits: proposal for proposal in cause.proposals[: tuning.MOST_EXTENDED]}
+    more = [_in_more_places(search, proposal, cause.lines) for proposal in first.values()]
+    if [proposal.edits for proposal in more] == list(first):
+        return cause
+    others = cause.proposals[len(more) :]
+    return replace(cause, proposals=tuple(search.ranked([*more, *others], cause.lines)))
+
+
+def _in_more_places(search: CauseSearch, proposal: Proposal, lines: Sequence[int]) -> Proposal:
+    wanted = {phrase for edit in proposal.edits if (phrase := _phrase(search, edit))}
+    words = {edit for edit in proposal.edits if isinstance(edit, AddToken)}
+    weight = sum(search.weights[n] for n in lines)
+
+    def is_the_same(edits: Sequence[Edit]) -> bool:
+        return _phrase(search, edits[-1]) in wanted and words.issuperset(
+            edit for edit in edits if isinstance(edit, AddToken)
+        )
+
+    def better(before: Proposal) -> Iterator[Proposal]:
+        left = [n for n in lines if n not in before.mended and n not in before.advanced]
+        if sum(search.weights[n] for n in left) < tuning.LEAST_LEFT * weight:
+            return
+        found = search.best_for(left, left, LIGHT, is_the_same)
+        for other in found.proposals if found else ():
+            edits = combined_edits(other.edits, before.edits)
+            both = search.proposal(edits, max(before.breadth, other.breadth) + 1)
+            is_safe = both.accepts_negatives <= before.accepts_negatives
+            if is_safe and (both.mended | both.advanced).intersection(left):
+                yield both
+
+    return _grown(proposal, better, tuning.MOST_PLACES)
+
+
+def _phrase(search: CauseSearch, edit: Edit) -> tuple[type[Edit], str] | None:
+    """Return what an edit writes or leaves out, whatever the place; ``None`` for other edits."""
+    match edit:
+        case Insert(text=text) | Widen(text=text):
+            return type(edit), text.rstrip("?*+")
+        case AddAlternative(rule=rule, text=text):
+            return type(edit), text.removesuffix(" ".join(("", *search.finder.closing(rule))))
+        case MakeOptional(rule=rule, at=at, count=1):
+            found = search.finder.profile.grammar.by_name[rule]
+            return type(edit), found.source_of(element_at(found, at))
+        case _:
+            return None
 
 
 # ------------------------------------------------------------------------------- edits as one

@@ -3,7 +3,7 @@
 from grammar.notation.edits import AddAlternative, Insert, MakeOptional
 from grammar.notation.g4 import read
 from recovery.clustering.cause import Cause
-from recovery.clustering.more_places import with_more_places
+from recovery.clustering.completion import with_more_places
 from recovery.clustering.negative_score import NegativeCounter, no_negatives
 from recovery.clustering.search import CauseSearch
 from tests.recovery.clustering.test_joined_causes import search_in
