@@ -117,7 +117,7 @@ class ControlCore:
     def next_time(self) -> int | None:
         """Return the time of the next event by the present plan; ``None`` if there is none."""
         ahead = self.arm.next_event()
-        times = [self._due[0][0]] if self._due else []
+        times = [time for time, *_ in self._due]
         if ahead is not None:
             times.append(ahead.time)
         return min(times, default=None)
@@ -218,7 +218,7 @@ class ControlCore:
             raise ValueError(f"time goes back from {self.now} to {time} µs")
         while (due := self.next_time()) is not None and due <= time:
             self.now = max(self.now, due)
-            if self._due and self._due[0][0] <= due:
+            if self._is_due(due):
                 self._act_when_due()
             else:
                 self._handle_arm_event(self.arm.take())
@@ -226,8 +226,11 @@ class ControlCore:
 
     def _settle(self) -> None:
         """Execute effects that are due now; events of the path need time to pass."""
-        while self._due and self._due[0][0] <= self.now:
+        while self._is_due(self.now):
             self._act_when_due()
+
+    def _is_due(self, time: int) -> bool:
+        return any(due <= time for due, *_ in self._due)
 
     def _act_when_due(self) -> None:
         _, _, effect, command = heapq.heappop(self._due)

@@ -42,14 +42,14 @@ class Kinematics(ABC):
     def __init__(self, machine: MachineData) -> None:
         self.machine = machine
         joints, end = machine.chain.joints, machine.chain.end
-        # a joint that is missing moves along no axis
-        missing = Joint("", IDENTITY, (0.0, 0.0, 0.0))
-        joints = (*joints, *(ROBOT_AXES - len(joints)) * [missing])
-        self._frames = np.array([matrix_of(frame) for frame in (*(j.frame for j in joints), end)])
-        axes = np.array([joint.axis for joint in joints])
+        missing = (ROBOT_AXES - len(joints)) * [Joint("", IDENTITY)]
+        frames = [joint.frame for joint in (*joints, *missing)]
+        self._frames = np.array([matrix_of(frame) for frame in (*frames, end)])
+        axes = np.zeros((ROBOT_AXES, 3))  # a joint that is missing moves along no axis
+        axes[: len(joints)] = [joint.axis for joint in joints]
         if machine.palletising is not None:
             axes[3] = 0.0
-        self._linear = np.array([joint.is_linear for joint in joints])
+        self._linear = np.array([joint.is_linear for joint in (*joints, *missing)])
         self._slides, self._turns = axes * self._linear[:, None], axes * ~self._linear[:, None]
 
     def coupled(self, axes: npt.ArrayLike) -> Array:

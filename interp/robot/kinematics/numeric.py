@@ -46,7 +46,8 @@ class NumericKinematics(Kinematics):
         if not 0 < count <= ROBOT_AXES:
             raise MachineDataError(f"a chain of {count} joints; 1 to 6 can be moved")
         super().__init__(machine)
-        self._size = max(float(np.linalg.norm(self._frames[:, :3, 3], axis=1).sum()), 1.0)
+        # with the 1 of each homogeneous matrix, so it is never 0
+        self._size = float(np.linalg.norm(self._frames[..., 3], axis=1).sum())
         self._moves = (self._slides + self._turns).any(axis=1)
         self._units = np.where(self._linear, 1.0 / self._size, math.pi / 180.0)
         self._tolerance = _MET if self._moves.all() else _OFF
@@ -143,12 +144,13 @@ class NumericKinematics(Kinematics):
 
     def _stretched(self) -> float:
         """Return the angle of A3 in degrees at which axis 5 is farthest from axis 2."""
-        if self._linear[1:4].any():
+        if self._linear[2]:
             return 0.0
-        axis, before = self._turns[2], self._frames[2]
-        ahead, behind = (self._frames[3] @ self._frames[4])[:3, 3], before[:3, :3].T @ before[:3, 3]
-        cosine = ahead @ behind - (axis @ ahead) * (axis @ behind)
-        return math.degrees(math.atan2(axis @ np.cross(ahead, behind), cosine))
+        axes = np.zeros((3, ROBOT_AXES))
+        axes[:, 2] = 90.0 * np.arange(3)
+        frames = self._frames_at(axes)
+        ahead, aside, back = ((frames[4] - frames[1])[:, :3, 3] ** 2).sum(axis=1)  # a sine wave
+        return math.degrees(math.atan2(2.0 * aside - ahead - back, ahead - back))
 
 
 def _found(path: Array) -> Array:

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from interp.robot.kinematics.kinematics import Array, Kinematics, matrix_of, nearest_turns
-from interp.robot.kinematics.machine_data import Axis
+from interp.robot.kinematics.machine_data import ROBOT_AXES, Axis
 from interp.values.faults import Fault
 from interp.values.poses import IDENTITY, Pose
 
@@ -108,23 +108,23 @@ def solve(
     tool: Pose = IDENTITY,
     status: int | None = None,
     turn: int | None = None,
-    start: Sequence[float] | None = None,
-    preference: TargetStatus = TargetStatus.SOURCE,
+    start: Sequence[float] = (0.0,) * ROBOT_AXES,
+    preference: TargetStatus = TargetStatus.BEST,
 ) -> Solution:
     """Return the axes for a pose of the flange relative to the robot's foot.
 
     An orientation that the arm cannot take is turned about the tip of ``tool``.
 
     ``status`` selects the configuration; its bits 3 and 4 have no meaning [POS-06]. Without it the
-    configuration is that of ``start``, or with ``preference`` `TargetStatus.BEST` the one whose
-    leading axis arrives first. ``turn`` selects among full turns of an axis if there are several;
-    without it each axis takes the shortest way from ``start`` [POS-02]. Without ``start`` all axes
-    start at 0, so that the most central solution is taken.
+    configuration is the one whose leading axis arrives first, or with ``preference``
+    `TargetStatus.SOURCE` that of ``start``. ``turn`` selects among full turns of an axis if there
+    are several; without it each axis takes the shortest way from ``start`` [POS-02]. From 0 the
+    most central solution is taken.
 
     Raises `Fault` 1366 if no such solution exists, 1447 if it exists but not within the software
     limits [MOT-15].
     """
-    solutions = np.empty((0, 6))
+    solutions = np.empty((0, ROBOT_AXES))
     if flange.is_finite:
         solutions = arm.inverse(arm.about_tips(matrix_of(flange), matrix_of(tool)))
     return _choose(arm, solutions, status, turn, start, preference)
@@ -195,31 +195,30 @@ def _choose(
     solutions: Array,
     status: int | None,
     turn: int | None,
-    start: Sequence[float] | None,
+    start: Sequence[float],
     preference: TargetStatus,
 ) -> Solution:
     solutions = solutions[~np.isnan(solutions).any(axis=1)]
-    if status is None and start is not None and preference is TargetStatus.SOURCE:
+    if status is None and preference is TargetStatus.SOURCE:
         status = int(arm.status(start))
     if status is not None:
         solutions = solutions[[_has_status(arm, one, status) for one in solutions.tolist()]]
     if not len(solutions):
         raise Fault("unreachable", "the target cannot be reached", number=1366, rules=("MOT-15",))
-    origin = tuple(start) if start is not None else (0.0,) * 6
     limited = arm.machine.axes
     for axes in (limited, tuple(axis.unlimited() for axis in limited)):
-        fits = (_within_limits(axes, solution.tolist(), turn, origin) for solution in solutions)
+        fits = (_within_limits(axes, solution.tolist(), turn, start) for solution in solutions)
         fitting = [fit for fit in fits if fit is not None]
         if fitting:
             break
     else:
-        named = zip(axes, solutions[0].tolist(), origin, strict=True)
+        named = zip(axes, solutions[0].tolist(), start, strict=True)
         raise next(
             _limit_fault(axis, value)
             for axis, value, before in named
             if not _full_turns(axis, value, before)
         )
-    found = min(fitting, key=lambda fit: _effort(limited, fit, origin))
+    found = min(fitting, key=lambda fit: _effort(limited, fit, start))
     return Solution(found, int(arm.status(found)), turn_of(found), singularities(arm, found))
 
 
@@ -230,7 +229,7 @@ def _has_status(arm: Kinematics, solution: Sequence[float], status: int) -> bool
 
 
 def _within_limits(
-    axes: Sequence[Axis], solution: Sequence[float], turn: int | None, origin: Axes
+    axes: Sequence[Axis], solution: Sequence[float], turn: int | None, origin: Sequence[float]
 ) -> Axes | None:
     """Return a solution with full turns added so that all axes are within limits, or ``None``."""
     fitted = []
@@ -259,7 +258,9 @@ def _full_turns(axis: Axis, value: float, origin: float) -> list[float]:
     return [value + 360.0 * count for count in range(first, last + 1)]
 
 
-def _effort(machine_axes: Sequence[Axis], axes: Axes, origin: Axes) -> tuple[float, float]:
+def _effort(
+    machine_axes: Sequence[Axis], axes: Axes, origin: Sequence[float]
+) -> tuple[float, float]:
     """Return the time of the leading axis at full speed, and the sum over all axes.
 
     They are in degrees instead of seconds if speeds are unknown.
@@ -278,7 +279,7 @@ def _settled_wrist(
     difference = found.axes[3] - a4
     a5 = found.axes[4] * math.cos(math.radians(difference))
     a6 = found.axes[5] + axes[3].direction * axes[5].direction * difference
-    settled = _within_limits(axes, (*found.axes[:3], a4, a5, a6), turn, tuple(start))
+    settled = _within_limits(axes, (*found.axes[:3], a4, a5, a6), turn, start)
     if settled is None:
         return found
     return replace(found, axes=settled, status=int(arm.status(settled)), turn=turn_of(settled))

@@ -18,7 +18,7 @@ import numpy as np
 from interp.robot.kinematics.kinematics import Array, Kinematics, matrix_of
 from interp.robot.kinematics.placement import IpoMode, Placement
 from interp.robot.kinematics.solution_choice import check_path, follow
-from interp.robot.path.pose_path import PosePath, poses_of
+from interp.robot.path.pose_path import GRID, PosePath, poses_of
 from interp.robot.path.transition import Transition, chained
 from interp.robot.path.uniform_spline import UniformSpline
 from interp.values.faults import Fault
@@ -29,13 +29,11 @@ if TYPE_CHECKING:
 #: First to third derivatives of axes by u, each ``(n, axes)``.
 Rates = tuple[Array, Array, Array]
 
-_FEWEST = 65
-"""The smallest number of points of a curve: the third derivative of a blend changes quickly."""
 _COARSE = 8
 _NOISE = 1e-11
 """Degrees of fourth differences below which only every `_COARSE`-th point is kept: for closer
 points, rounding would dominate the differences."""
-_COUNTS = tuple((_FEWEST - 1) * 2**doubled + 1 for doubled in range(8))
+_COUNTS = tuple((len(GRID) - 1) * 2**doubled + 1 for doubled in range(8))
 _SMOOTH = 0.004
 """Largest fourth difference of points in degrees; a cubic spline errs by 5/384 of it at most."""
 _ROUGH = 0.05  # degrees of fourth difference at which, with most points, an axis jumps
@@ -122,7 +120,7 @@ class SplineAxes:
     @property
     def grid(self) -> Array:
         """See `AxisPath.grid`."""
-        return np.linspace(0.0, 1.0, _FEWEST)
+        return GRID
 
     @property
     def end(self) -> Array:
@@ -171,8 +169,8 @@ class BlendedAxes:
     @property
     def grid(self) -> Array:
         """See `AxisPath.grid`."""
-        count = max(len(self.first.grid), len(self.second.grid), _FEWEST)
-        return np.unique(np.concatenate((np.linspace(0.0, 1.0, count), self.transition.breaks)))
+        even = max(self.first.grid, self.second.grid, GRID, key=len)
+        return np.unique(np.concatenate((even, self.transition.breaks)))
 
     @property
     def end(self) -> Array:

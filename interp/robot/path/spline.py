@@ -23,7 +23,7 @@ from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.circle import Circle
 from interp.robot.path.orientation import Orientation, turning
-from interp.robot.path.pose_path import Line, OrientedPath, PathShape
+from interp.robot.path.pose_path import GRID, Line, OrientedPath, PathShape
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import RotationSpline
@@ -198,8 +198,7 @@ def _orientations(chain: Sequence[Segment], lengths: Sequence[float]) -> Sequenc
 
     spline = RotationSpline(knots, Rotation.from_matrix(rotations))
     swept = []
-    for start, length in zip(knots, lengths, strict=False):
-        where = np.linspace(start, start + length, 17)
-        rate = float(np.linalg.norm(spline(where, 1), axis=1).max()) * length
-        swept.append(_Swept(spline, float(start), float(length), rate))
+    for start, length in zip(knots.tolist(), lengths, strict=False):
+        rates = np.linalg.norm(spline(start + GRID * length, 1), axis=1)
+        swept.append(_Swept(spline, start, length, float(rates.max()) * length))
     return swept

@@ -24,7 +24,7 @@ from interp.robot.path.axis_path import (
     PosePathCurve,
     Rates,
 )
-from interp.robot.path.pose_path import Blend, Line, OrientedPath
+from interp.robot.path.pose_path import GRID, Blend, Line, OrientedPath
 from interp.robot.path.speed_profile import SpeedProfile, joined
 from interp.robot.path.transition import Overlap, Rounding, Transition
 from interp.robot.planning.blend_zones import Zone
@@ -37,10 +37,9 @@ from interp.robot.planning.limits import (
 )
 from interp.robot.planning.schedule import schedule
 from interp.robot.planning.straight_run import StraightPart, StraightRun, extended, straight_through
-from interp.robot.planning.tracks import Track, Tracks
+from interp.robot.planning.tracks import METRE, Track, Tracks
 from interp.values.faults import Fault
 
-_METRE = 1000.0
 _PARABOLA, _SMOOTH = 1.0, 2.0
 """Slopes of roundings; the first is nearly a parabola, which BLD-12 states for lines."""
 _SOONER = 0.95
@@ -52,7 +51,6 @@ _STRAIGHT = 1e-3
 """Relative difference below which directions count as equal."""
 _BACK = -0.99
 """The smallest cosine of a corner whose speed is kept; a reversal has no finite curve."""
-_GRID = np.linspace(0.0, 1.0, 65)
 _ENDS = np.array([0.0, 1.0])
 
 
@@ -125,7 +123,7 @@ class _Corner:
         if self.common is None:
             check_path(self.tracks.machine.every_axis, curve.axes(curve.grid))
         else:
-            (start,) = one.axes(np.array([1.0 - transition.before]))
+            start, _ = axes.axes(_ENDS)
             pose_path = self._pose_path(self.common, transition)
             first, second = (each.others for each in self.common)
             others = BlendedAxes(first, second, transition)
@@ -152,14 +150,14 @@ class _Corner:
         limits = self.first.axis_limits.merged(self.second.axis_limits, np.maximum)
         programmed, most = slowest, math.inf
         if self.common is not None:
-            tangents = self._pose_path(self.common, transition).tangents(_GRID)
-            bends = np.gradient(tangents, _GRID[1], axis=0)
+            tangents = self._pose_path(self.common, transition).tangents(GRID)
+            bends = np.gradient(tangents, GRID[1], axis=0)
             sharpest, fastest = (
                 max(float(np.linalg.norm(rows, axis=1).max()), _TINY) for rows in (bends, tangents)
             )
             speed = max(path.velocity for side in (self.one, self.other) for path in side.paths[:1])
             programmed = min(programmed, speed / fastest)
-            most = math.sqrt(self.tracks.machine.acceleration.path * _METRE / sharpest)
+            most = math.sqrt(self.tracks.machine.acceleration.path * METRE / sharpest)
         elif not self.first.is_cp and not self.second.is_cp:
             speeds = limits.velocity / np.maximum(np.abs(rates[0]), _TINY)
             programmed = min(programmed, float(speeds.min()))
@@ -224,27 +222,24 @@ class _Corner:
             for slope in ((_PARABOLA, _SMOOTH) if are_lines else (_SMOOTH,))
         ]
         times = [self._duration(transition) for transition in choices]
-        most = math.inf
         ending, starting = _parameter(self.one.limits), _parameter(self.other.limits)
-        if ending is not None and starting is not None:
-            exact = ending.duration + starting.duration
-            if keeps_speed and min(times) < exact:
-                return choices[times.index(min(times))]
-            most = _SAVED * exact
-            overlap = Overlap(
-                ending.between(ending.time_at(1.0 - zone.before), ending.duration),
-                starting.between(0.0, starting.time_at(zone.after)),
-            )
-            if overlap.is_even:
-                choices.append(overlap)
-                times.append(self._duration(overlap))
-            if not overlap.is_even or min(times) > most:
-                choices.append(overlap.evened())
-                times.append(self._duration(choices[-1]))
-            if self.first.axis_limits.torques is not None and min(times) > exact:
-                text = "the blend would need more torque than its motions with a stop between them"
-                raise Fault("torque", text, number=1155, rules=("BLD-11",))
-        most = max(min(most, min(times) / _SOONER), min(times))
+        exact = ending.duration + starting.duration
+        if keeps_speed and min(times) < exact:
+            return choices[times.index(min(times))]
+        overlap = Overlap(
+            ending.between(ending.time_at(1.0 - zone.before), ending.duration),
+            starting.between(0.0, starting.time_at(zone.after)),
+        )
+        if overlap.is_even:
+            choices.append(overlap)
+            times.append(self._duration(overlap))
+        if not overlap.is_even or min(times) > _SAVED * exact:
+            choices.append(overlap.evened())
+            times.append(self._duration(choices[-1]))
+        if self.first.axis_limits.torques is not None and min(times) > exact:
+            text = "the blend would need more torque than its motions with a stop between them"
+            raise Fault("torque", text, number=1155, rules=("BLD-11",))
+        most = max(min(_SAVED * exact, min(times) / _SOONER), min(times))
         return choices[next(place for place, time in enumerate(times) if time <= most)]
 
     def course(self, zone: Zone) -> tuple[tuple[float, float], bool]:
@@ -281,8 +276,8 @@ class _Corner:
             JoinedStretch(zone, into),
             *(JoinedStretch(s, SAME_CURVE if place else out) for place, s in enumerate(after)),
         ]
-        profiles = schedule(stretches, AT_REST, 1.0)
-        return math.inf if profiles is None else sum(profile.duration for profile in profiles)
+        found = schedule(stretches, AT_REST, 1.0)
+        return math.inf if found is None else found.duration
 
     @staticmethod
     def _pose_path(curves: tuple[PosePathCurve, PosePathCurve], transition: Transition) -> Blend:
@@ -290,13 +285,12 @@ class _Corner:
 
 
 @lru_cache(maxsize=64)  # a motion is the second of one blend, then the first of another
-def _parameter(curve_limits: CurveLimits) -> SpeedProfile | None:
-    """Return the parameter of a curve over time, from rest to rest, or ``None`` if impossible."""
+def _parameter(curve_limits: CurveLimits) -> SpeedProfile:
+    """Return the parameter of a curve over time, from rest to rest."""
     stretches = [JoinedStretch(stretch, SAME_CURVE) for stretch in curve_limits.stretches]
-    profiles = schedule(stretches, AT_REST, 1.0)
-    if profiles is None:
-        return None
-    steps = zip(curve_limits.stretches, profiles, strict=True)
+    found = schedule(stretches, AT_REST, 1.0)
+    assert found is not None, "from rest a curve can always be travelled"
+    steps = zip(curve_limits.stretches, found.profiles, strict=True)
     return joined([profile.scaled(1.0 / stretch.size) for stretch, profile in steps])
 
 

@@ -22,11 +22,10 @@ from interp.robot.path.programmed_targets import Programmed
 from interp.robot.path.spline import Knot, Segment, chains_of, pose_paths_of
 from interp.robot.planning.junctions import STOP, Junction
 from interp.robot.planning.spline_ranges import with_ranges
-from interp.robot.planning.tracks import Piece, Track, Tracks
+from interp.robot.planning.tracks import STILL, Piece, Track, Tracks
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-_STILL = 1e-6  # mm or degrees
 _CLOSE = np.linspace(0.0, 1.0, 257)
 """Of u, where a spline of axes is looked at for software limits: it may swing beyond its points."""
 _MOST_SEGMENTS = 1000
@@ -114,8 +113,8 @@ def _pieces(
             settings = replace(settings, orientation="#VAR")
             length = max(pose_path.length, *np.degrees(pose_path.angles))
             if (
-                length < _STILL
-                and np.abs(travelled[place + 1] - travelled[place]).max(initial=0.0) < _STILL
+                length < STILL
+                and np.abs(travelled[place + 1] - travelled[place]).max(initial=0.0) < STILL
             ):
                 piece = tracks.still(np.concatenate((axes, travelled[place])), settings)
             else:
@@ -147,7 +146,7 @@ def _ptp_block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Trac
         goal = target.goal(own_motion, part.target, motion.settings.placement)
         is_singular = is_singular or goal.is_singular
         travel = np.abs(goal.axes - points[-1])
-        is_still = bool(travel.max() < _STILL)
+        is_still = bool(travel.max() < STILL)
         spans.append(0.0 if is_still else float((travel / tracks.programmed(own).velocity).max()))
         points.append(points[-1] if is_still else goal.axes)
         target = target.reached(goal.axes, None, motion.settings.placement)

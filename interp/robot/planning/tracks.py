@@ -23,7 +23,7 @@ from interp.robot.path.axis_path import (
 )
 from interp.robot.path.circle import Circle, circle_through
 from interp.robot.path.orientation import Carried, Orientation, about, turning
-from interp.robot.path.pose_path import Line, OrientedPath
+from interp.robot.path.pose_path import GRID, Line, OrientedPath
 from interp.robot.path.programmed_targets import Programmed
 from interp.robot.path.tool_path import tool_tangents
 from interp.robot.path.wrist import WristCurve
@@ -34,9 +34,9 @@ from interp.robot.planning.torque_limits import TorqueLimits
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
-_STILL = 1e-6  # mm or degrees: less is no motion
+STILL = 1e-6  # mm or degrees: less is no motion
 _ZERO_LENGTH, _SINGULAR, _TURNED_VARIABLY = 3171, 2868, 2821
-_METRE = 1000.0
+METRE = 1000.0
 _SPLINE_JERKS = (500e3, 50e3)
 """mm/s³ and deg/s³: as delivered [MOT-05]."""
 
@@ -137,7 +137,7 @@ class Tracks:
         settings = motion.settings
         goal = before.goal(motion, motion.target, settings.placement)
         piece = self.axis_piece(LinearAxes(before.axes, goal.axes), settings)
-        is_still = bool(np.abs(goal.axes - before.axes).max() < _STILL)
+        is_still = bool(np.abs(goal.axes - before.axes).max() < STILL)
         pieces = (replace(piece, is_still=is_still),)
         track = Track(motion, pieces, self.programmed(settings), goal.is_singular)
         return track, before.reached(goal.axes, goal.components, settings.placement)
@@ -172,7 +172,7 @@ class Tracks:
         settings = motion.settings
         externals = before.externals(motion.target, motion.is_relative)
         travel = np.abs(externals - before.axes[ROBOT_AXES:]).max(initial=0.0)
-        if max(pose_path.length, *map(math.degrees, pose_path.angles), travel) < _STILL:
+        if max(pose_path.length, *map(math.degrees, pose_path.angles), travel) < STILL:
             track = Track(motion, (self.still(before.axes, settings),), self.limits)
             return track, before.reached(before.axes, point, settings.placement)
         others = LinearAxes(before.axes[ROBOT_AXES:], externals)
@@ -190,7 +190,7 @@ class Tracks:
         is_wrist = settings.orientation == "#JOINT" and settings.placement.mode is IpoMode.BASE
         kind_of_curve = WristCurve if is_wrist else PosePathCurve
         curve = kind_of_curve(self.arm, settings.placement, pose_path, start, others)
-        angles = [0.0 if is_wrist else math.degrees(angle) for angle in pose_path.angles]
+        angles = () if is_wrist else np.degrees(pose_path.angles).tolist()
         paths = self.paths(settings, (pose_path.length, *angles), is_spline=kind[0] == "S")
         self.check_speed(settings, curve, paths)
         return Piece(curve, curve_limits_of(curve, limits, limits, paths), paths)
@@ -222,7 +222,7 @@ class Tracks:
     def paths(
         self, settings: Settings, lengths: Sequence[float], *, is_spline: bool = False
     ) -> tuple[PathLimits, ...]:
-        """Return the limits for a path of this length, swivel and rotation.
+        """Return the limits for a path of this length, swivel and rotation, or length alone.
 
         See [MOT-04, MOT-05, MOT-07]. Units are mm and degrees. Spline motions have the jerk with
         which controllers are delivered.
@@ -237,12 +237,12 @@ class Tracks:
         )
         limits = []
         for length, (name, velocity, acceleration, top, top_gain) in zip(
-            lengths, programmed, strict=True
+            lengths, programmed, strict=False
         ):
             speed = min(_above(velocity, f"$VEL.{name}"), top)
             gain = min(_above(acceleration, f"$ACC.{name}"), top_gain)
-            unit, jerk = (_METRE, path_jerk) if name == "CP" else (1.0, turn_jerk)
-            if length > _STILL:
+            unit, jerk = (METRE, path_jerk) if name == "CP" else (1.0, turn_jerk)
+            if length > STILL:
                 limits.append(PathLimits(length, speed * unit, gain * unit, jerk))
         return tuple(limits)
 
@@ -253,11 +253,11 @@ class Tracks:
         """
         if curve.pose_path is not None or not any(each.is_reduced for each in settings):
             return ()
-        tangents = tool_tangents(curve, np.linspace(0.0, 1.0, 65))
+        tangents = tool_tangents(curve, GRID)
         fastest = float(np.linalg.norm(tangents, axis=1).max())
-        if fastest < _STILL:
+        if fastest < STILL:
             return ()
-        return (PathLimits(fastest, self.machine.t1_speed * _METRE, math.inf),)
+        return (PathLimits(fastest, self.machine.t1_speed * METRE, math.inf),)
 
     def check_speed(self, settings: Settings, curve: Curve, paths: Sequence[PathLimits]) -> None:
         """Raise `Fault` 1102 if an axis is too fast and $CP_VEL_TYPE forbids to slow down.
