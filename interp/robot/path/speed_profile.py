@@ -6,7 +6,7 @@ seconds.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from itertools import pairwise
 from typing import TypeVar
@@ -15,8 +15,7 @@ import numpy as np
 
 from interp.robot.kinematics.kinematics import Array
 
-_ROUNDS = 60
-_INSTANT = 1e-12  # seconds
+_HALVINGS = 52
 
 #: Duration in s, initial acceleration, and jerk.
 Piece = tuple[float, float, float]
@@ -74,19 +73,7 @@ class SpeedProfile:
         (origin, *state), (end, *_) = next(
             pair for pair in pairwise(self.knots) if pair[1][1] >= position
         )
-        first, last = 0.0, end - origin
-        dt = last / 2
-        for _ in range(_ROUNDS):
-            reached, slope, _ = _moved(dt, *state)
-            beyond = reached - position
-            first, last = (first, dt) if beyond >= 0.0 else (dt, last)
-            following = dt - beyond / slope if slope > 0.0 else -1.0
-            if not first <= following <= last:
-                following = (first + last) / 2
-            if abs(following - dt) < _INSTANT:
-                break
-            dt = following
-        return origin + dt
+        return origin + bisected(lambda dt: _moved(dt, *state)[0] < position, 0.0, end - origin)
 
     def stretched(self, length: float) -> SpeedProfile:
         """Return the profile with an end position that differs only by rounding."""
@@ -104,11 +91,11 @@ class SpeedProfile:
     def split(self, ends: Sequence[float]) -> list[SpeedProfile]:
         """Return the parts up to each of these increasing positions; the last one is the end."""
         parts: list[SpeedProfile] = []
-        before, place = 0.0, 0.0
-        for number, end in enumerate(ends, start=1):
-            after = self.duration if number == len(ends) else self.time_at(end)
-            parts.append(self.between(before, max(after, before)).stretched(end - place))
-            before, place = max(after, before), end
+        before = place = 0.0
+        for end in ends:
+            after = self.time_at(end)
+            parts.append(self.between(before, after).stretched(end - place))
+            before, place = after, end
         return parts
 
     def between(self, start: float, end: float) -> SpeedProfile:
@@ -147,6 +134,19 @@ def joined(profiles: Sequence[SpeedProfile]) -> SpeedProfile:
         knots = [*knots[:-1], *own]
         time, position, *_ = knots[-1]
     return SpeedProfile(knots)
+
+
+def bisected(fits: Callable[[float], bool], within: float, beyond: float) -> float:
+    """Return the value that fits and is nearest to one that may not."""
+    if fits(beyond):
+        return beyond
+    for _ in range(_HALVINGS):
+        middle = (beyond + within) / 2.0
+        if fits(middle):
+            within = middle
+        else:
+            beyond = middle
+    return within
 
 
 def _moved(

@@ -90,7 +90,7 @@ def _braking_share(track: Track, share: float, *, at_end: bool) -> float:
     """Return the share on which a part of the programmed speed is lost or gained [BLD-13]."""
     stretches = _piece(track, at_end=at_end).limits.stretches
     stretch = stretches[-1] if at_end else stretches[0]
-    return ramp(share * stretch.programmed, 0.0, 0.0, stretch.normal).length
+    return ramp(0.0, share * stretch.programmed, stretch.normal).length
 
 
 def _axis_share(

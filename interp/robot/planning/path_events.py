@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from interp.robot.arm import ArmEvent, EventKind, Place
+from interp.robot.path.speed_profile import bisected
 from interp.robot.path.tool_path import tool_way
 from interp.robot.planning.blend_zones import wants_blend
 from interp.robot.planning.plan import Passage, places_of
-from interp.robot.planning.ramps import bisected
 from interp.robot.planning.timeline import APEX, MICROSECOND, Key, Section, Timeline, micros
 
 _ORDER: tuple[EventKind, ...] = (
@@ -60,12 +60,12 @@ def _events_of(passage: Passage, timeline: Timeline, now: int, stop_from: StopFr
 
     def add(
         kind: EventKind,
-        seconds: float | None,
+        seconds: float,
         key: int | None = None,
         *,
         is_late: bool = False,
     ) -> None:
-        if seconds is None or (kind, key) in passage.taken:
+        if seconds > timeline.end or (kind, key) in passage.taken:
             return
         time = max(micros(seconds), now)
         is_unwanted = kind == "motion_end" and out is None and wants_blend(motion)
@@ -88,13 +88,13 @@ def _events_of(passage: Passage, timeline: Timeline, now: int, stop_from: StopFr
 
 
 class _Clock:
-    """The times in seconds at which a motion passes its places; ``None`` if not planned."""
+    """The times in seconds at which a motion passes its places; behind all legs if not planned."""
 
     def __init__(self, passage: Passage, timeline: Timeline) -> None:
         self._passage = passage
         self._timeline = timeline
 
-    def time(self, section: Section, u: float) -> float | None:
+    def time(self, section: Section, u: float) -> float:
         """Return the time at which a parameter is passed."""
         legs = self._timeline.of(section.key)
         if legs and u <= legs[0].stretch.start:
@@ -103,9 +103,9 @@ class _Clock:
             last = leg.last
             if u <= last + _ROUNDING:
                 return leg.ends if u >= last - _ROUNDING else leg.time_at(u)
-        return None
+        return math.inf
 
-    def place(self, place: Place, part: int | None) -> float | None:
+    def place(self, place: Place, part: int | None) -> float:
         """Return the time of a place with its delay, moved into the admissible range."""
         passage, into, out = self._passage, self._passage.into, self._passage.out
         start, end = self.time(*passage.start), self.time(*passage.end)
@@ -120,24 +120,16 @@ class _Clock:
             seconds = end
             if out is not None:
                 earliest = self.time(out, 0.0)
-        if seconds is None:
-            return None
-        seconds += place.delay * MICROSECOND
-        if earliest is not None:
-            seconds = max(seconds, earliest)
-        if latest is None:  # not planned that far, so it may still come to lie earlier
-            return seconds if seconds <= self._timeline.end else None
-        return min(seconds, latest)
+        return min(max(seconds + place.delay * MICROSECOND, earliest), latest)
 
     def last_chance(
         self, place: Place, part: int | None, now: int, stop_from: StopFrom
-    ) -> tuple[float | None, bool]:
+    ) -> tuple[float, bool]:
         """Return the latest time to brake for a stop at a place; now and True if it is too late."""
         section, u = self._on_path(place, part)
-        passed, start = self.time(section, u), self.time(*self._passage.start)
-        if passed is None or start is None:
-            return None, False
-        low, high = max(start, now * MICROSECOND), passed
+        low, high = max(self.time(*self._passage.start), now * MICROSECOND), self.time(section, u)
+        if high > self._timeline.end:
+            return high, False
         first = stop_from(low)
         if high <= low or (first is not None and first > (section.key, u + _NEAR)):
             return low, True

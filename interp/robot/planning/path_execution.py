@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from interp.robot.path.speed_profile import SpeedProfile, steady
 from interp.robot.planning.junctions import SAME_CURVE, JoinedStretch, PathState
-from interp.robot.planning.schedule import braking, schedule
+from interp.robot.planning.schedule import Schedule, brakings, schedule
 from interp.robot.planning.timeline import Key, Leg, Section, Timeline
 
 _THERE = 1e-9
@@ -64,19 +63,13 @@ class PathExecution:
     # -------------------------------------------------------------------------- motion and stops
 
     def go(
-        self,
-        path: Sequence[Section],
-        time: float,
-        override: float,
-        *,
-        new_behind: Key | None = None,
+        self, path: Sequence[Section], time: float, override: float, *, is_strict: bool = False
     ) -> bool:
         """Travel a path from a time on, starting in the state of the arm at that time.
 
-        If ``new_behind`` is given, the path after this section is new. Then nothing changes and
-        the result is false if a seam would be passed faster than is allowed.
+        If ``is_strict``, nothing changes and the result is false where a seam would be passed
+        faster than is allowed.
         """
-        is_strict = new_behind is not None
         route = self.ahead(path, time)
         if not route:
             return True
@@ -88,8 +81,6 @@ class PathExecution:
         # dropped and what is under way ends faster than it allows now. Neither is the fault of what
         # comes far behind, so it begins where that can be.
         for state, begins, rest in self._ahead_of(leg, route, max(time, leg.begins)):
-            if is_strict and all(section.key != new_behind for section in rest):
-                return False
             if not rest or self._lay(rest, state, begins, override, is_strict):
                 return True
         return False
@@ -145,28 +136,32 @@ class PathExecution:
 
         Each has its state, its time, and the remaining route.
         """
-        yield leg.state(time), time, tuple(route)
-        following = self._timeline.after(leg)
-        for each in (leg, *following):
-            route = _from(route, each.section.key)
-            if not route or route[0].key != each.section.key:
-                return
-            rest, state = _behind(each, route)
+        places = {section.key: place for place, section in enumerate(route)}
+        yield leg.state(time), time, tuple(route[places[leg.section.key] :])
+        for each in (leg, *self._timeline.after(leg)):
+            place = places.get(each.section.key)
+            if place is None or each.last > route[place].end + _THERE:
+                return  # it is on a path that was left, or goes on where the path now turns off
+            rest, state = _behind(each, route[place:])
             yield state, each.ends, rest
 
     def _ramp_down(
         self, leg: Leg, route: Sequence[Section], time: float, is_hard: bool
     ) -> tuple[float, list[Leg]]:
         """Return the legs of a stop that begins at a time, and the start of the first leg."""
-        route = _from(route, leg.section.key)
-        # What is planned is no faster than allowed, so a brake that would be begins later.
-        for is_strict in (True, False):
+
+        def ways() -> Iterator[tuple[Schedule, float, list[Entry]]]:
             for state, begins, rest in self._ahead_of(leg, route, time):
                 entries = [entry for entry in _entries(rest, state.u) if entry[1] is not None]
-                profiles = braking(_known(entries), state, is_hard=is_hard, is_strict=is_strict)
-                if profiles is not None:
-                    return begins, _legs(entries, profiles, begins)
-        return self._timeline.end, []
+                for one in brakings(_known(entries), state, is_hard=is_hard):
+                    yield one, begins, entries
+
+        # What is planned is no faster than allowed, so a brake that would be begins later.
+        way = next((way for way in ways() if not way[0].over), None) or next(ways(), None)
+        if way is None:
+            return self._timeline.end, []
+        found, begins, entries = way
+        return begins, _legs(entries, found.profiles, begins)
 
     def _lay(
         self,
@@ -178,11 +173,11 @@ class PathExecution:
     ) -> bool:
         """Schedule a route from a state and append its legs to the timeline."""
         entries = _entries(route, state.u)
-        profiles = schedule(_known(entries), state, override, is_strict=is_strict)
-        if profiles is None:
+        found = schedule(_known(entries), state, override, is_strict=is_strict)
+        if found is None or (is_strict and found.over):
             return False
         self._timeline.cut(begins)
-        for leg in _legs(entries, profiles, begins):
+        for leg in _legs(entries, found.profiles, begins):
             self._timeline.append(leg)
         return True
 
@@ -205,22 +200,16 @@ def _known(entries: Sequence[Entry]) -> list[JoinedStretch]:
     return [joined for _, joined in entries if joined is not None]
 
 
-def _from(route: Sequence[Section], key: Key) -> Sequence[Section]:
-    """Return the part of a route from the section with a key on, or from the first one behind."""
-    place = next((n for n, section in enumerate(route) if section.key >= key), len(route))
-    return route[place:]
-
-
 def _behind(leg: Leg, route: Sequence[Section]) -> tuple[tuple[Section, ...], PathState]:
     """Return the route that remains after a leg, and the state there."""
     state = leg.state(leg.ends)
-    if leg.last < route[0].end - _THERE:
-        return tuple(route), replace(state, u=leg.last)
+    if state.u < route[0].end - _THERE:
+        return tuple(route), state
     for place, section in enumerate(route[1:], start=1):
         state = section.junction.passed(state, section.start)
         if not section.is_used_up:
             return tuple(route[place:]), state
-    return (), PathState(leg.last, 0.0, 0.0)
+    return (), state
 
 
 def _entries(route: Sequence[Section], start: float) -> list[Entry]:

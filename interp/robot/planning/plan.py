@@ -167,6 +167,7 @@ def _sections(track: Track) -> tuple[Section, ...]:
             None,
             piece.curve,
             piece.limits,
+            end=0.0 if piece.is_still else 1.0,
             junction=piece.junction,
             is_still=piece.is_still,
             part=part,

@@ -82,7 +82,7 @@ class PlannedArm:
         if self._is_braked:
             self._brakes[-1] = self._plan
         following = self._blended(plan, track, programmed)
-        if following is None or not self._schedule(following, new_behind=plan.sections[-1].key):
+        if following is None or not self._schedule(following, is_strict=True):
             following = plan.with_motion(track, programmed)
             self._schedule(following)
         self._plan = following
@@ -303,17 +303,16 @@ class PlannedArm:
     def _advance(self, now: int) -> None:
         self._now = max(self._now, now)
 
-    def _schedule(self, plan: Plan, *, new_behind: Key | None = None) -> bool:
+    def _schedule(self, plan: Plan, *, is_strict: bool = False) -> bool:
         """Schedule a plan from now on, unless the override is 0.
 
-        If the path is new behind a section, do so only if no seam is passed too fast; return
-        whether it was done.
+        If ``is_strict``, do so only if no seam is passed too fast; return whether it was done.
         """
         self._agenda = None
         if self._override == 0.0:
             return True
         path, time = plan.sections, self._seconds
-        return self._execution.go(path, time, self._override, new_behind=new_behind)
+        return self._execution.go(path, time, self._override, is_strict=is_strict)
 
     def _halt(self, *, is_hard: bool) -> None:
         """Stop on the path."""

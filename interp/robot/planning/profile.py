@@ -10,14 +10,12 @@ from functools import lru_cache
 import ruckig
 
 from interp.robot.path.speed_profile import SpeedProfile, joined, profile_of, steady
-from interp.robot.planning.ramps import Bounds, at_most, ramp, speed_after
+from interp.robot.planning.ramps import Bounds, ramp, speed_after
 
 _SLACK = 1e-7
 """Relative difference within which a change of speed fills a length."""
 _SPARE = 2e-6
 """Relative difference by which rounding may let the speed beside an end exceed its bound."""
-_EXACT = 1e-9
-"""Relative error of a length that is accepted from Ruckig."""
 _ROUNDING = 1e-11
 """Relative difference by which Ruckig may exceed the speed."""
 
@@ -36,12 +34,11 @@ def travel(
     The caller has checked with `ramp` that it is possible. If the change of speed just fits into
     the length, it is the whole profile.
     """
-    direct = ramp(speed, acceleration, target, bounds, final)
+    direct = ramp(speed, target, bounds, acceleration, final)
     if direct.length >= length * (1.0 - _SLACK):
         return direct.stretched(length)
     found = _solved(length, speed, acceleration, target, bounds, final)
-    misses = found is None or abs(found.length - length) > _EXACT * length
-    if found is None or misses or found.lowest < -_SLACK * bounds.velocity:
+    if found is None or found.lowest < -_SLACK * bounds.velocity:
         found = _unhurried(length, speed, acceleration, target, bounds, final)
     return found.stretched(length)
 
@@ -57,7 +54,7 @@ def _solved(
     unit = max(bounds.velocity, target)
     for v, a, jerk in ((speed, acceleration, bounds.jerk), (target, final, -bounds.jerk)):
         eased = speed_after(v, a, 0.0, jerk)
-        if at_most(eased, unit, _SPARE):
+        if eased * (1.0 - _SPARE) <= unit:
             unit = max(eased, unit)
     asked = ruckig.InputParameter(1)
     asked.current_velocity = [speed / unit]
@@ -91,10 +88,10 @@ def _unhurried(
     Ruckig has none where the override has dropped and the speed is above its bound.
     """
     fastest = bounds.velocity
-    before = ramp(speed, acceleration, fastest, bounds)
-    behind = ramp(fastest, 0.0, target, bounds, final)
+    before = ramp(speed, fastest, bounds, acceleration)
+    behind = ramp(fastest, target, bounds, final=final)
     left = length - before.length - behind.length
     if left >= 0.0:
         return joined((before, steady(fastest, left), behind))
-    direct = ramp(speed, acceleration, target, bounds, final)
+    direct = ramp(speed, target, bounds, acceleration, final)
     return joined((direct, steady(target, length - direct.length)))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from interp.robot.path.speed_profile import SpeedProfile, profile_of
 
-_HALVINGS = 48
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,24 +40,21 @@ class Bounds:
 
 
 def ramp(
-    speed: float, acceleration: float, target: float, bounds: Bounds, final: float = 0.0
+    speed: float, target: float, bounds: Bounds, acceleration: float = 0.0, final: float = 0.0
 ) -> SpeedProfile:
     """Return the fastest change to a target speed, from one acceleration to another.
 
     If one of these accelerations exceeds its bound, it replaces the bound.
     """
     jerk, most = bounds.jerk, max(bounds.acceleration, abs(acceleration), abs(final))
-    sign = 1.0 if target >= speed_after(speed, acceleration, final, jerk) else -1.0
+    sign = math.copysign(1.0, target - speed_after(speed, acceleration, final, jerk))
     start, end = sign * acceleration, sign * final  # as if speeding up
-    change = sign * (target - speed)
-    peak = math.sqrt(abs(jerk * change + (start * start + end * end) / 2))  # below 0 by rounding
-    hold = 0.0
-    if peak > most:
-        hold = (change - (2 * most * most - start * start - end * end) / (2 * jerk)) / most
-        peak = most
+    square = jerk * sign * (target - speed) + (start * start + end * end) / 2
+    highest = math.sqrt(abs(square))  # below 0 by rounding
+    peak = min(highest, most)
     pieces = (
         ((peak - start) / jerk, acceleration, sign * jerk),
-        (hold, sign * peak, 0.0),
+        ((highest - peak) * (highest + peak) / (jerk * most), sign * peak, 0.0),
         ((peak - end) / jerk, sign * peak, -sign * jerk),
     )
     return profile_of(speed, pieces)
@@ -68,17 +65,6 @@ def speed_after(speed: float, acceleration: float, final: float, jerk: float) ->
     return speed + (final + acceleration) * abs(final - acceleration) / (2.0 * jerk)
 
 
-def at_most(value: float, limit: float, tolerance: float = 1e-9) -> bool:
+def at_most(value: float, limit: float) -> bool:
     """Return whether a length or speed is not above a limit, up to rounding errors."""
-    return value <= limit * (1.0 + tolerance) + 1e-9
-
-
-def bisected(fits: Callable[[float], bool], within: float, beyond: float) -> float:
-    """Return the value that still fits and is nearest to one that does not."""
-    for _ in range(_HALVINGS):
-        middle = (beyond + within) / 2.0
-        if fits(middle):
-            within = middle
-        else:
-            beyond = middle
-    return within
+    return value <= limit + _ROUNDING * (limit + 1.0)

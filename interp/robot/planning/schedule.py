@@ -7,8 +7,8 @@ spans and to pass blends, the one that takes the shortest time is used.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 from interp.robot.path.speed_profile import SpeedProfile
@@ -18,14 +18,26 @@ from interp.robot.planning.spans import RATIOS, Span, spans_of
 
 _HELD = 0.8
 """Share of its constant speed below which a blend counts as slowed down by its neighbours."""
-_TOLERANCE = 1e-6
-"""Relative difference by which a speed may exceed the allowed one."""
 
-#: The speed at the end of each span, and the length on which speeds exceed what is allowed, as they
-#: do after the override was reduced, while the arm is still braking.
+#: The speed at the end of each span, and the length on which speeds exceed what is allowed.
 _Speeds = tuple[list[float], float]
-#: The length at excessive speed, the duration in seconds, spans, and a profile for each stretch.
-_Candidate = tuple[float, float, Sequence[Span], list[SpeedProfile]]
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """A profile for each stretch; its positions are u from its start times `Stretch.size`.
+
+    ``over`` is the length of spans that are left faster than what follows allows, as they are after
+    the override was reduced, while the arm is still braking.
+    """
+
+    profiles: list[SpeedProfile]
+    over: float
+
+    @property
+    def duration(self) -> float:
+        """The duration in seconds."""
+        return sum(profile.duration for profile in self.profiles)
 
 
 def schedule(
@@ -34,77 +46,67 @@ def schedule(
     override: float,
     *,
     is_strict: bool = False,
-) -> list[SpeedProfile] | None:
-    """Return a profile for each stretch, from a state to standstill at the end of the last one.
+) -> Schedule | None:
+    """Return the schedule from a state to standstill at the end of the last stretch.
 
-    Positions of a profile are u from its start times `Stretch.size`. Return ``None`` if that is
-    impossible: the acceleration cannot be reduced in time, the end is too near to stop there, or,
-    if ``is_strict``, the end of a span would be passed faster than what follows allows.
+    If ``is_strict``, one that leaves spans too fast is not made as good as can be.
+    Return ``None`` if that is impossible: the acceleration cannot be reduced in time, or the end is
+    too near to stop there.
     """
     if not stretches:
-        return []
-    candidates: list[_Candidate] = []
-    tried: list[list[float]] = []
-    for ratio in RATIOS:
-        spans = spans_of(stretches, state, override, ratio=ratio)
-        if (lengths := [span.length for span in spans]) in tried:
-            continue
-        tried.append(lengths)
+        return Schedule([], 0.0)
+    candidates: list[Schedule] = []
+    every = (spans_of(stretches, state, override, ratio=ratio) for ratio in RATIOS)
+    different = {tuple(span.length for span in spans): spans for spans in every}
+    for spans in different.values():
         start = _start(spans, state)
         found = _settled(spans, start, is_strict)
-        candidates += _travelled(spans, start, found)
+        candidates += _travelled(stretches, spans, start, found)
         if _ease(spans, found):
-            candidates += _travelled(spans, start, _settled(spans, start, is_strict))
-    if not candidates:
-        return None
-    _, _, best, profiles = min(candidates, key=lambda candidate: candidate[:2])
-    return _own_units(stretches, best, profiles)
+            candidates += _travelled(stretches, spans, start, _settled(spans, start, is_strict))
+    return min(candidates, key=lambda one: (one.over, one.duration), default=None)
 
 
-def braking(
-    stretches: Sequence[JoinedStretch],
-    state: PathState,
-    *,
-    is_hard: bool,
-    is_strict: bool = False,
-) -> list[SpeedProfile] | None:
-    """Return profiles that stop the arm as soon as possible; the last ends within its stretch.
+def brakings(
+    stretches: Sequence[JoinedStretch], state: PathState, *, is_hard: bool
+) -> Iterator[Schedule]:
+    """Yield schedules that stop the arm as soon as possible; the last profile ends in its stretch.
 
     The override is ignored, because it does not scale accelerations [MOT-09]. Blends ahead are
     passed at constant speed unless the arm would enter one too fast.
-
-    Return ``None`` if the acceleration cannot be reduced on the first span, or, if ``is_strict``,
-    if a span would be passed faster than what follows allows.
     """
     if not stretches:
-        return []
+        yield Schedule([], 0.0)
+        return
     for ratio in RATIOS:
         spans = spans_of(stretches, state, 1.0, ratio=ratio, is_hard=is_hard)
         constant = [span for span in spans if span.is_constant]
         for slowed in ((), constant):
             for span in slowed:
                 span.is_constant = False
-            profiles = _braked(spans, _start(spans, state), is_strict)
-            if profiles is not None:
-                return _own_units(stretches, spans, profiles)
-    return None
+            yield from _braked(stretches, spans, _start(spans, state))
 
 
-def _braked(spans: Sequence[Span], speed: float, is_strict: bool) -> list[SpeedProfile] | None:
-    """Return the profiles of all stretches up to the one on which the arm stops; see `braking`."""
-    allowed = _allowed(spans) if is_strict else [math.inf] * len(spans)
+def _braked(
+    stretches: Sequence[JoinedStretch], spans: Sequence[Span], speed: float
+) -> Iterator[Schedule]:
+    """Yield the schedule up to the stretch on which the arm stops, if it can; see `brakings`."""
     profiles: list[SpeedProfile] = []
-    for span, most in zip(spans, allowed, strict=True):
-        if not span.is_constant or at_most(speed, span.bounds.velocity, _TOLERANCE):
+    over = 0.0
+    for span, most in zip(spans, _allowed(spans), strict=True):
+        if not span.is_constant or at_most(speed, span.bounds.velocity):
             last = span.stop(speed)
             if last is not None:
-                return profiles + last
+                profiles += last
+                break
         found = span.exit_speed(speed, 0.0)
-        if found is None or not at_most(found, most, _TOLERANCE):
-            return None
+        if found is None:
+            return
+        if not at_most(found, most):
+            over += span.length
         profiles += span.profiles(speed, found)
         speed = found
-    return profiles
+    yield Schedule(_own_units(stretches, spans, profiles), over)
 
 
 # -------------------------------------------------------------------------------- both passes
@@ -119,18 +121,16 @@ def _allowed(spans: Sequence[Span]) -> list[float]:
     return allowed[::-1]
 
 
-def _speeds(spans: Sequence[Span], start: float, is_strict: bool) -> _Speeds | None:
+def _speeds(spans: Sequence[Span], start: float) -> _Speeds | None:
     """Return the speeds that can be reached, from one at the start to standstill."""
-    from_rest = start == spans[0].acceleration == 0.0
+    is_from_rest = start == spans[0].acceleration == 0.0
     speed, over = start, 0.0
     ends: list[float] = []
     for span, most in zip(spans, _allowed(spans), strict=True):
-        found = span.exit_speed(speed, most, has_no_alternative=from_rest and not is_strict)
+        found = span.exit_speed(speed, most, is_from_rest=is_from_rest)
         if found is None:
             return None
-        if not at_most(found, most, _TOLERANCE):
-            if is_strict:
-                return None
+        if not at_most(found, most):
             over += span.length
         ends.append(found)
         speed = found
@@ -139,23 +139,25 @@ def _speeds(spans: Sequence[Span], start: float, is_strict: bool) -> _Speeds | N
 
 def _settled(spans: Sequence[Span], start: float, is_strict: bool) -> _Speeds | None:
     """Return speeds at which no blend is entered too fast for the changes of speed inside it."""
-    found = _speeds(spans, start, is_strict)
-    while found is not None and found[1] and _slow(spans, found[0]):
-        found = _speeds(spans, start, is_strict)
+    found = _speeds(spans, start)
+    while not is_strict and found is not None and found[1] and _slow(spans, found[0]):
+        found = _speeds(spans, start)
     return found
 
 
 # -------------------------------------------------------------------------------- alternatives
 
 
-def _travelled(spans: Sequence[Span], start: float, found: _Speeds | None) -> list[_Candidate]:
+def _travelled(
+    stretches: Sequence[JoinedStretch], spans: Sequence[Span], start: float, found: _Speeds | None
+) -> list[Schedule]:
     """Return how spans are travelled at these speeds, if there are any."""
     if found is None:
         return []
     ends, over = found
     steps = zip(spans, [start, *ends], ends, strict=False)
     profiles = [profile for span, *speeds in steps for profile in span.profiles(*speeds)]
-    return [(over, sum(profile.duration for profile in profiles), spans, profiles)]
+    return [Schedule(_own_units(stretches, spans, profiles), over)]
 
 
 def _ease(spans: Sequence[Span], found: _Speeds | None) -> bool:

@@ -12,10 +12,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from interp.robot.path.speed_profile import SpeedProfile, steady
+from interp.robot.path.speed_profile import SpeedProfile, bisected, steady
 from interp.robot.planning.junctions import STOP, JoinedStretch, PathState
 from interp.robot.planning.profile import travel
-from interp.robot.planning.ramps import Bounds, at_most, bisected, ramp, speed_after
+from interp.robot.planning.ramps import Bounds, at_most, ramp, speed_after
 
 _SPARE = 1.0 - 1e-6
 """Share of a length that changes of speed may use, so that rounding makes none impossible."""
@@ -63,10 +63,6 @@ class Span:
         """The distance from its start to its end."""
         return self.ends[-1]
 
-    @property
-    def _fastest(self) -> float:
-        return self.constant.velocity if self.is_constant else self.bounds.velocity
-
     def add(self, scale: float, length: float) -> None:
         """Append a stretch."""
         self.scales.append(scale)
@@ -85,14 +81,14 @@ class Span:
 
     def fastest_entry(self) -> float:
         """Return the largest speed at which its bounds allow to enter it."""
-        most = min(self._fastest, _largest_with(self.entry_bend, self.bounds))
+        most = self._fastest_with(self.entry_bend)
         if self.jump:
             most = min(most, math.sqrt(_JUMP * self.bounds.acceleration / abs(self.jump)))
         return most
 
     def fastest_exit(self) -> float:
         """Return the largest speed at which its bounds allow to leave it."""
-        return min(self._fastest, _largest_with(self.exit_bend, self.bounds))
+        return self._fastest_with(self.exit_bend)
 
     def entry_speed(self, wanted: float, most: float) -> float:
         """Return the largest speed, at most ``most``, to enter it and leave it at ``wanted``."""
@@ -103,15 +99,15 @@ class Span:
             change = self._distance(speed, self.entry_bend * speed**2, min(wanted, speed))
             return at_most(change, self.length * _SPARE)
 
-        return most if fits(most) else bisected(fits, 0.0, most)
+        return bisected(fits, 0.0, most)
 
     def exit_speed(
-        self, speed: float, wanted: float, *, has_no_alternative: bool = False
+        self, speed: float, wanted: float, *, is_from_rest: bool = False
     ) -> float | None:
         """Return the speed at its end if entered at ``speed``: ``wanted``, or the nearest possible.
 
-        A lower speed is preferred. Return ``None`` if not even the acceleration can be reduced to
-        zero. If the span ``has_no_alternative``, more speeds are tried.
+        A lower speed is preferred. Return ``None`` if the acceleration cannot be reduced to zero in
+        time; if the path is travelled from rest, there is always a speed.
         """
         if self.is_constant:
             return speed
@@ -120,21 +116,19 @@ class Span:
         def fits(target: float) -> bool:
             return at_most(self._distance(speed, acceleration, target), self.length)
 
+        def eased(target: float) -> float:
+            final = self.exit_bend * target**2 if is_from_rest else 0.0
+            return speed_after(speed, acceleration, final, jerk)
+
         if fits(wanted):
             return wanted
-        # Not every speed between two that can be reached can be reached: braking hard, it may take
-        # longer to ease off the brake at some speed than to stand still.
-        jerk = self.bounds.jerk
-        candidates = [0.0, speed_after(speed, acceleration, 0.0, jerk)]
-        if has_no_alternative:  # before an overlap the shortest way is to brake at once
-
-            def is_slower(target: float) -> bool:
-                final = self.exit_bend * target**2
-                return target <= speed_after(speed, acceleration, final, jerk)
-
-            candidates.append(bisected(is_slower, 0.0, max(speed, wanted)))
-        within = next((one for one in candidates if one >= 0.0 and fits(one)), None)
-        return None if within is None else bisected(fits, within, wanted)
+        within, jerk = 0.0, self.bounds.jerk
+        if not fits(within):
+            # Braking hard, it may take longer to stand still than to ease off the brake at once.
+            most = speed_after(speed, abs(acceleration), 0.0, jerk)
+            within = bisected(lambda target: target <= eased(target), 0.0, most)
+            within = max(within, eased(within))
+        return bisected(fits, within, wanted) if fits(within) else None
 
     def profiles(self, speed: float, final: float) -> list[SpeedProfile]:
         """Return the profile of each stretch between the speeds at both ends of the span."""
@@ -145,18 +139,32 @@ class Span:
 
     def stop(self, speed: float) -> list[SpeedProfile] | None:
         """Return the profiles up to a stop within the span, or ``None`` if it is too short."""
-        whole = ramp(speed, self._entry_acceleration(speed), 0.0, self.bounds)
+        whole = ramp(speed, 0.0, self.bounds, self._entry_acceleration(speed))
         if not at_most(whole.length, self.length):
             return None
         last = next(place for place, end in enumerate(self.ends) if at_most(whole.length, end))
         return whole.split([*self.ends[:last], whole.length])
+
+    def _fastest_with(self, bend: float) -> float:
+        """Return the largest speed at which an acceleration of bend·speed² can be reduced to zero.
+
+        The speed must not exceed its bound meanwhile.
+        """
+        fastest = (self.constant if self.is_constant else self.bounds).velocity
+
+        def fits(speed: float) -> bool:
+            gain = abs(bend) * speed**2
+            eased = speed_after(speed, gain, 0.0, self.bounds.jerk)
+            return gain * _SPARE <= self.bounds.acceleration and eased * _SPARE <= fastest
+
+        return bisected(fits, 0.0, fastest)
 
     def _entry_acceleration(self, speed: float) -> float:
         return self.acceleration + self.entry_bend * speed**2
 
     def _distance(self, speed: float, acceleration: float, final: float) -> float:
         """Return the distance on which the speed changes to a final one."""
-        return ramp(speed, acceleration, final, self.bounds, self.exit_bend * final**2).length
+        return ramp(speed, final, self.bounds, acceleration, self.exit_bend * final**2).length
 
 
 def spans_of(
@@ -209,21 +217,3 @@ def _is_about(inner: Bounds, outer: Bounds, ratio: float) -> bool:
         and inner.acceleration * _ABOUT <= outer.acceleration
         and inner.jerk * _ABOUT <= outer.jerk
     )
-
-
-def _largest_with(bend: float, bounds: Bounds) -> float:
-    """Return the largest speed at which an acceleration of bend·speed² can be reduced to zero.
-
-    The speed must not exceed its bound meanwhile.
-    """
-    if not bend:
-        return math.inf
-
-    def fits(speed: float) -> bool:
-        gain = abs(bend) * speed**2
-        return (
-            gain * _SPARE <= bounds.acceleration
-            and speed_after(speed, gain, 0.0, bounds.jerk) * _SPARE <= bounds.velocity
-        )
-
-    return bounds.velocity if fits(bounds.velocity) else bisected(fits, 0.0, bounds.velocity)

@@ -212,9 +212,9 @@ def _travelled(pieces: Sequence[Piece]) -> Iterator[tuple[int, Stretch, SpeedPro
         for place, stretch in enumerate(piece.limits.stretches):
             numbers.append(number)
             stretches.append(JoinedStretch(stretch, SAME_CURVE if place else piece.junction))
-    profiles = schedule(stretches, AT_REST, 1.0)
-    assert profiles is not None, "from rest a block can always be travelled"
-    for number, joined, profile in zip(numbers, stretches, profiles, strict=True):
+    found = schedule(stretches, AT_REST, 1.0)
+    assert found is not None, "from rest a block can always be travelled"
+    for number, joined, profile in zip(numbers, stretches, found.profiles, strict=True):
         yield number, joined.stretch, profile
 
 

@@ -101,11 +101,6 @@ class Leg:
     @property
     def last(self) -> float:
         """The parameter at which it ends."""
-        if self.section.is_still:
-            return self.section.end
-        if self.ends >= self.begins + self.profile.duration:
-            reached = self.stretch.start + self.profile.length / self.stretch.size
-            return min(reached, self.stretch.end)
         return self.state(self.ends).u
 
     def time_at(self, u: float) -> float:

@@ -393,19 +393,18 @@ def test_no_change_of_a_line_can_be_noticed() -> None:
 )
 def test_a_search_may_go_another_way(reached: int, runs: int, changed: str, fate: Fate) -> None:
     """A change of one is equivalent where all cases that run it did, and saw nothing else."""
-    mutant = _mutant("interp.robot.planning.ramps", "bisected", "2.0", "3.0")
+    mutant = _mutant("interp.robot.path.speed_profile", "bisected", "2.0", "3.0")
     one = Detection(mutant, "survived", reached=reached, runs=runs, changed=changed)
     assert fate == detection._if_equivalent(one).fate
 
 
 def test_a_search_is_tried_on_all_cases() -> None:
     """A sample does not tell that nothing seen is another; what decides is no search."""
-    module = "interp.robot.path.speed_profile"
+    module = "interp.robot.path.arc_length"
     cases = [_case(name) for name in ("motion/acc_cp", "motion/lin_speed", "motion/lin_end_pose")]
     counts = []
-    beyond = "position >= self.length", "position < self.length"
-    for was, now in (("reached - position", "reached + position"), beyond):
-        mutant = _mutant(module, "SpeedProfile.time_at", was, now)
+    for was, now in (("wanted - self.at(u)", "wanted + self.at(u)"), ("0.0", "1.0")):
+        mutant = _mutant(module, "ArcLength.parameters", was, now)
         reaches = [Reach(case, {module: frozenset({mutant.line})}, 1) for case in cases]
         is_search = bool(search_reason(mutant))
         counts.append(len(candidates(mutant, reaches, 1, is_search=is_search).tried))

@@ -170,7 +170,7 @@ def longest(line: PlannedArm, program: Sequence[Motion], ahead: int) -> float:
     known = float((places[1 + ahead : -1] - places[1 : -1 - ahead]).min(initial=math.inf))
 
     def needed(speed: float) -> float:
-        braking = ramp(speed, 0.0, 0.0, Bounds(speed, acceleration, jerk)).length
+        braking = ramp(speed, 0.0, Bounds(speed, acceleration, jerk)).length
         return braking + speed * min(acceleration / jerk, math.sqrt(speed / jerk))
 
     whole = leg.ends - leg.begins
