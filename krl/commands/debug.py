@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.errors import FINDINGS, FINE, InputError, say
-from krl.running.run_options import RunOptions, expected_errors, prepared_run, with_run_options
+from krl.running.run_options import RunOptions, expected_errors, prepared_run
 
 if TYPE_CHECKING:
     from interp.debugging.debugger import Debugger
     from krl.running.debug_prompt import Prompt
 
 
-@with_run_options
 def debug(
     file: Annotated[Path | None, typer.Argument(metavar="[FILE]")] = None,
     *,

@@ -8,7 +8,7 @@ import typer
 
 from krl.commands.run import run
 from krl.errors import InputError, say
-from krl.running.run_options import Robot
+from krl.running.run_options import Robot, RunOptions
 
 _NAME, _SUBMIT = "search_demo", "count_parts"
 #: The folders of the example in an installed package and in a checkout.
@@ -38,7 +38,8 @@ def demo(
     script = program.with_suffix(".io")
     words = f"krl run {program} --robot mujoco --io {script} --submit {_SUBMIT} --html {html}"
     say(words, err=True)
-    status = run(program, robot=Robot.MUJOCO, io=script, submit=_SUBMIT, html=html)
+    options = RunOptions(robot=Robot.MUJOCO, io=script, submit=_SUBMIT)
+    status = run(program, options=options, html=html)
     if opened:
         webbrowser.open(html.absolute().as_uri())
     return status

@@ -20,7 +20,6 @@ from krl.running.run_options import (
     RunOptions,
     expected_errors,
     prepared_run,
-    with_run_options,
 )
 from krl.terminal.output_files import check_files
 from krl.terminal.progress import progress_bar
@@ -40,7 +39,6 @@ class Level(StrEnum):
     FULL = "full"
 
 
-@with_run_options
 def run(
     file: FileArgument,
     *,

@@ -1,14 +1,11 @@
 """Options of commands that run programs, and the set-up made from them."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import StrEnum
-from functools import wraps
-from inspect import Parameter, signature
-from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,7 +14,6 @@ from krl.extras import ARM, expected_extras
 from krl.project_settings import settings_of
 from krl.running.arm_files import read_arm
 from krl.running.program_loading import load_program
-from krl.terminal.options import as_option, descriptions
 
 if TYPE_CHECKING:
     from interp.program.load import CheckedProgram
@@ -73,7 +69,7 @@ ExecutorOption = Annotated[
 class RunOptions:
     """The options of a run, from the command line or a client.
 
-    `with_run_options` makes an option from each field.
+    A command with a parameter of this type has an option for each field.
 
     Options:
         routine: Where to start; default: the first routine.
@@ -110,30 +106,6 @@ class RunOptions:
     ] = None
     statements: Annotated[int | None, typer.Option(min=1, max=2**31 - 1)] = None
     strict: bool = False
-
-
-def with_run_options(command: Callable[..., int]) -> Callable[..., int]:
-    """Return ``command`` with an option for each field of `RunOptions` instead of ``options``."""
-    hints, (_, said) = get_type_hints(RunOptions, include_extras=True), descriptions(RunOptions)
-    parameters = [
-        Parameter(
-            one.name,
-            Parameter.KEYWORD_ONLY,
-            default=one.default,
-            annotation=as_option(one.name, hints[one.name], said.get(one.name)),
-        )
-        for one in fields(RunOptions)
-    ]
-    own = signature(command, eval_str=True)
-
-    @wraps(command)
-    def called(*words: Any, **given: Any) -> int:
-        of_options = {one.name: given.pop(one.name) for one in parameters if one.name in given}
-        return command(*words, options=RunOptions(**of_options), **given)
-
-    spliced = ([one] if one.name != "options" else parameters for one in own.parameters.values())
-    vars(called)["__signature__"] = own.replace(parameters=list(chain.from_iterable(spliced)))
-    return called
 
 
 def prepared_run(

@@ -1,7 +1,9 @@
 """Options of commands: how they are declared, those that several commands share, their defaults.
 
 A command declares an option by a parameter with its type, and describes it in the section
-``Options:`` of its docstring. `typer.Option` is only needed for more: limits, another name.
+``Options:`` of its docstring. A parameter whose type is a dataclass stands for an option of each
+field, described in the docstring of that class. `typer.Option` is only needed for more: limits,
+another name; `typer.Argument` makes an argument of a parameter.
 """
 
 import inspect
@@ -9,6 +11,7 @@ import os
 import re
 from collections.abc import Callable, Iterable, Mapping
 from copy import copy
+from dataclasses import is_dataclass
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_args
@@ -127,13 +130,13 @@ class Commands(typer.Typer):
         return add
 
 
-def descriptions(documented: object) -> tuple[str, Mapping[str, str]]:
+def _descriptions(documented: object) -> tuple[str, Mapping[str, str]]:
     """Return a docstring without its section ``Options:``, and what that says of each option."""
     text, _, listed = (inspect.getdoc(documented) or "").partition("\n\nOptions:\n")
     return text, {name: " ".join(said.split()) for name, said in _DESCRIBED.findall(listed)}
 
 
-def as_option(name: str, annotation: Any, said: str | None) -> Any:
+def _as_option(name: str, annotation: Any, said: str | None) -> Any:
     """Return the annotation of a parameter as typer needs it for an option with this help."""
     kind, *given = get_args(annotation) if hasattr(annotation, "__metadata__") else (annotation,)
     info = copy(given[0]) if given else typer.Option()
@@ -146,19 +149,41 @@ def as_option(name: str, annotation: Any, said: str | None) -> Any:
     return Annotated[kind, info]
 
 
+def _is_group(annotation: Any) -> bool:
+    """Return whether a parameter with this annotation stands for several options."""
+    return is_dataclass(annotation)
+
+
+def _options_of(one: inspect.Parameter, said: Mapping[str, str]) -> list[inspect.Parameter]:
+    """Return the parameters that typer needs for a parameter of a command: options with help."""
+    kind: Any = one.annotation
+    parameters = [one]
+    if _is_group(kind):
+        _, said = _descriptions(kind)
+        parameters = [*inspect.signature(kind, eval_str=True).parameters.values()]
+    return [
+        each.replace(
+            kind=one.kind, annotation=_as_option(each.name, each.annotation, said.get(each.name))
+        )
+        for each in parameters
+    ]
+
+
 def _with_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Return a command whose parameters are options, with the help that its docstring gives."""
-    text, said = descriptions(command)
+    text, said = _descriptions(command)
     own = inspect.signature(command, eval_str=True)
+    made_of = [(one, _options_of(one, said)) for one in own.parameters.values()]
 
     @wraps(command)
     def called(*words: Any, **given: Any) -> Any:
+        for one, options in made_of:
+            if _is_group(one.annotation):
+                values = {each.name: given.pop(each.name) for each in options}
+                given[one.name] = one.annotation(**values)
         return command(*words, **given)
 
     called.__doc__ = text
-    parameters = [
-        one.replace(annotation=as_option(one.name, one.annotation, said.get(one.name)))
-        for one in own.parameters.values()
-    ]
+    parameters = [each for _, options in made_of for each in options]
     vars(called)["__signature__"] = own.replace(parameters=parameters)
     return called
