@@ -17,6 +17,7 @@ from reports.nightly.step_status import has_ended
 from reports.rendering.number_format import counted
 from reports.rendering.record_fields import Record, count, nested, number, records, text, texts
 from support.files.atomic_write import write_atomic
+from support.files.untrusted import DocumentError, json_of
 
 Json = dict[str, Any]
 
@@ -145,19 +146,12 @@ def last_times(runs: Iterable[Record]) -> dict[str, tuple[float, str]]:
 def _run(line: str) -> Json | None:
     """Return the run of a line; ``None`` if it is damaged: not one, or with infinite numbers."""
     try:
-        run = json.loads(line, parse_float=_finite, parse_constant=_finite)
-    except (ValueError, RecursionError):
+        run = json_of(line)
+    except DocumentError:
         return None
     if not isinstance(run, dict) or not isinstance(run.get("date"), str):
         return None
     return run if all(isinstance(run.get(part, {}), dict) for part in _PARTS) else None
-
-
-def _finite(written: str) -> float:
-    value = float(written)
-    if not math.isfinite(value):
-        raise ValueError(written)
-    return value
 
 
 def _is_of(line: str, run: Mapping[str, Any]) -> bool:
