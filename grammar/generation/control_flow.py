@@ -115,16 +115,10 @@ def _times(code: RoutineWriter) -> int:
     return code.choices.between(1, min(5, room))
 
 
-def _spare(code: RoutineWriter) -> list[str]:
-    """Return the counters that no enclosing loop uses."""
-    used = {one.name for one in code.counters}
-    return [name for name in code.passes if name not in used]
-
-
 def loop_for(code: RoutineWriter) -> bool:
     """Write a FOR, upwards or downwards, with or without constant limits [CTL-05]."""
     choices = code.choices
-    times, spare = _times(code), _spare(code)
+    times, spare = _times(code), code.spare()
     if not times or not spare:
         return False
     name = choices.pick(spare)
@@ -163,7 +157,7 @@ def _limits(code: RoutineWriter, times: int) -> tuple[str, str, int, int, int, i
 
 def _counted(code: RoutineWriter) -> tuple[str, int] | None:
     """Set an unused counter to zero; return its name and the number of passes."""
-    times, spare = _times(code), _spare(code)
+    times, spare = _times(code), code.spare()
     if not times or not spare:
         return None
     name = code.choices.pick(spare)

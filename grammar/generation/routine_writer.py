@@ -163,6 +163,11 @@ class RoutineWriter:
         with self.block(f"IF {condition} THEN", "ENDIF"):
             return self.line(text)
 
+    def spare(self) -> list[str]:
+        """Return the counters that no enclosing loop uses."""
+        used = {one.name for one in self.counters}
+        return [name for name in self.passes if name not in used]
+
     # ----------------------------------------------------------------------- what it costs
 
     def spend(self, cost: int = 1) -> None:

@@ -52,8 +52,7 @@ def order_of_evaluation(code: RoutineWriter) -> bool:
 
 def count_beyond_range(code: RoutineWriter) -> bool:
     """FOR to the greatest or least INT, left after a few passes."""
-    used = {one.name for one in code.counters}
-    spare = [name for name in code.passes if name not in used]
+    spare = code.spare()
     if not code.risk or len(spare) < 2 or code.left() < 24:
         return False
     counter, passes = spare[0], spare[1]

@@ -124,7 +124,8 @@ def _point(where: str, given: object) -> _Point:
     if "id" not in members:
         raise InputError(f"{where} has no id")
     name = members["id"]
-    if isinstance(name, bool) or not (isinstance(name, str | int) or _is_finite(name)):
+    is_finite = isinstance(name, str | int) or (isinstance(name, float) and math.isfinite(name))
+    if isinstance(name, bool) or not is_finite:
         raise InputError(f"{where}: its id is neither a text nor a number")
     where = f"{where} ({name!r})"
     pose = Pose.of(*(_number(where, members, key) for key in _COMPONENTS))
@@ -165,10 +166,6 @@ def _number(where: str, members: Mapping[str, Any], key: str) -> float:
     if not math.isfinite(number):
         raise InputError(f"{where}: {key} is not a finite number")
     return number
-
-
-def _is_finite(value: object) -> bool:
-    return isinstance(value, float) and math.isfinite(value)
 
 
 def _bits(where: str, members: Mapping[str, Any], key: str) -> int:

@@ -3,9 +3,7 @@
 from collections.abc import Mapping
 from enum import Enum
 from pathlib import Path
-from typing import Any, TypeVar
-
-_E = TypeVar("_E", bound=Enum)
+from typing import Any
 
 
 class Refused(Exception):
@@ -44,20 +42,13 @@ class Arguments:
         """
         if issubclass(kind, Path):
             return self.path(name)
-        if issubclass(kind, Enum):
-            return self.choice(name, kind)
+        if issubclass(kind, Enum) and (text := self.text(name)):
+            try:
+                return kind(text)
+            except ValueError:
+                words = ", ".join(str(one.value) for one in kind)
+                raise Refused(f"{name}: {text} is none of {words}") from None
         return self.text(name) if kind is str else self.get(name, kind, None)
-
-    def choice(self, name: str, kind: type[_E]) -> _E | None:
-        """Return a member of an enumeration, or ``None``; raises `Refused` for another word."""
-        text = self.text(name)
-        if text is None:
-            return None
-        try:
-            return kind(text)
-        except ValueError:
-            words = ", ".join(str(one.value) for one in kind)
-            raise Refused(f"{name}: {text} is none of {words}") from None
 
     def inner(self, name: str) -> "Arguments":
         """Return an argument that is an object."""

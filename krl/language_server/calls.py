@@ -26,14 +26,6 @@ class Signature:
     active: int
 
 
-@dataclass(frozen=True, slots=True)
-class ArgumentHint:
-    """The name of the parameter for the argument at an offset."""
-
-    offset: int
-    name: str
-
-
 def signature_at(looked: AnalysedFile, offset: int) -> Signature | None:
     """Return the routine whose arguments are at an offset, even in an incomplete line."""
     line, column = looked.source.place(offset)
@@ -73,8 +65,8 @@ def _open_call(before: str) -> tuple[str, int] | None:
     return stack[-1] if stack else None
 
 
-def argument_hints(looked: AnalysedFile, first: int, last: int) -> Iterator[ArgumentHint]:
-    """Yield the parameters of arguments in some lines, except where the argument has that name."""
+def argument_hints(looked: AnalysedFile, first: int, last: int) -> Iterator[tuple[int, str]]:
+    """Yield offset and parameter of arguments in some lines, unless the argument has that name."""
     if looked.checked is None:
         return
     source, resolution = looked.source, looked.checked.resolution
@@ -90,4 +82,4 @@ def argument_hints(looked: AnalysedFile, first: int, last: int) -> Iterator[Argu
             text = source.text[argument.span[0] : argument.span[1]]
             # EXT declares parameters without names
             if given.name and text.upper().removesuffix("[]") != given.key:
-                yield ArgumentHint(argument.span[0], given.name)
+                yield argument.span[0], given.name

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from conformance.suite.registry import registry
 from grammar.diagnostics.diagnostic import Diagnostic, Region
@@ -28,23 +27,17 @@ _TIERS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Definition:
-    """The place of a declaration."""
-
-    path: str
-    region: Region
-
-
-def definition(project: OpenProject, looked: AnalysedFile, offset: int) -> Definition | None:
-    """Return the declaration of the name at an offset, or ``None`` if no file declares it."""
+def definition(
+    project: OpenProject, looked: AnalysedFile, offset: int
+) -> tuple[Source, Region] | None:
+    """Return where the name at an offset is declared, or ``None`` if no file declares it."""
     found = found_at(looked, offset)
     if found is None or found.module is None:
         return None
     source = project.source(found.module.path)
     if source is None:
         return None
-    return Definition(source.path, Region.of(source, found.symbol.span))
+    return source, Region.of(source, found.symbol.span)
 
 
 def hover(project: OpenProject, looked: AnalysedFile, offset: int) -> tuple[str, Region] | None:

@@ -234,10 +234,7 @@ class _Handlers:
     def definition(self, looked: AnalysedFile, offset: int) -> lsp.Location | None:
         """Return the declaration of the name under the cursor."""
         found = definition(self.project, looked, offset)
-        if found is None:
-            return None
-        source = self.project.source(found.path)
-        return None if source is None else location(source, found.region)
+        return None if found is None else location(*found)
 
     @_answers(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL, about=_file, nothing=list)
     def symbols(self, looked: AnalysedFile) -> list[lsp.DocumentSymbol]:
@@ -310,12 +307,12 @@ class _Handlers:
         first, last = given.range.start.line + 1, given.range.end.line + 1
         return [
             lsp.InlayHint(
-                protocol.position_of(looked.source, one.offset),
-                f"{one.name}:",
+                protocol.position_of(looked.source, place),
+                f"{name}:",
                 kind=lsp.InlayHintKind.Parameter,
                 padding_right=True,
             )
-            for one in argument_hints(looked, first, last)
+            for place, name in argument_hints(looked, first, last)
         ]
 
     @_answers(

@@ -14,17 +14,10 @@ from krl.commands.bench.vm import vm
 from krl.terminal.options import Commands
 
 app = Commands(help="Measure the tools themselves.")
-app.command("mutation")(mutation)
-app.command("vm")(vm)
-app.command("arm")(arm)
-app.command("programs")(programs)
-app.command("conform")(conform)
-app.command("fuzz")(fuzz)
-app.command("real-code")(real_code)
-app.command("recover")(recover)
-app.command("check")(check)
-app.command("growth")(growth)
-app.command("scale")(scale)
+for _command in (
+    *(mutation, vm, arm, programs, conform, fuzz, real_code, recover, check, growth, scale),
+):
+    app.command()(_command)
 
 
 @app.callback()
