@@ -5,9 +5,9 @@ the TextMate grammar of the VS Code extension and a syntax file for Vim, ``--che
 these are up to date.
 """
 
-import argparse
 import json
 import sys
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,7 +16,7 @@ from grammar.notation.krl_grammar import krl_grammar
 from grammar.notation.model import Grammar, Reference, walk
 from grammar.parser.lexer import regex_of
 from grammar.semantics.predefined import System
-from support.files.atomic_write import write_atomic
+from support.files.generated_files import main
 
 _EDITORS = Path(__file__).parents[1] / "editors"
 #: Rules of the grammar whose words have a colour of their own.
@@ -182,32 +182,13 @@ def _vim() -> str:
     return "\n".join([*lines, "let b:current_syntax = 'krl'", ""])
 
 
-#: The generated files and the functions that generate them.
-FILES = {
-    _EDITORS / "vscode" / "syntaxes" / "krl.tmLanguage.json": _textmate,
-    _EDITORS / "vim" / "syntax" / "krl.vim": _vim,
-}
-
-
-def main() -> int:
-    """Write the files, or print which ones are stale."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    chosen = parser.add_mutually_exclusive_group(required=True)
-    chosen.add_argument("--write", action="store_true")
-    chosen.add_argument("--check", action="store_true")
-    if parser.parse_args().write:
-        for file, made in FILES.items():
-            write_atomic(file, made())
-        return 0
-    stale = [
-        file.name
-        for file, made in FILES.items()
-        if not file.is_file() or file.read_text(encoding="utf-8") != made()
-    ]
-    for name in stale:
-        sys.stderr.write(f"{name} is stale: python -m krl.highlighting --write\n")
-    return 1 if stale else 0
+def files() -> Mapping[Path, str]:
+    """Return the text of each generated file."""
+    return {
+        _EDITORS / "vscode" / "syntaxes" / "krl.tmLanguage.json": _textmate(),
+        _EDITORS / "vim" / "syntax" / "krl.vim": _vim(),
+    }
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main("krl.highlighting", files))

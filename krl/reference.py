@@ -3,19 +3,18 @@
 ``python -m krl.reference --write`` makes them anew, ``--check`` says whether they are up to date.
 """
 
-import argparse
 import dataclasses
 import inspect
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from enum import Enum
 from pathlib import Path
 from typing import Any
 
 import typer
 
-from support.files.atomic_write import write_atomic
+from support.files.generated_files import main
 
 PAGE = Path(__file__).parents[1] / "docs" / "commands.md"
 LIBRARY_PAGE = PAGE.with_name("python-reference.md")
@@ -139,21 +138,10 @@ def _prose(text: str | None, *, keeps_code: bool = False) -> str:
     return "\n\n".join(made)
 
 
-def main() -> int:
-    """Write the pages, or print which one is stale."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    chosen = parser.add_mutually_exclusive_group(required=True)
-    chosen.add_argument("--write", action="store_true")
-    chosen.add_argument("--check", action="store_true")
-    arguments = parser.parse_args()
-    for file, page in ((PAGE, reference()), (LIBRARY_PAGE, library_reference())):
-        if arguments.write:
-            write_atomic(file, page)
-        elif not file.is_file() or file.read_text(encoding="utf-8") != page:
-            sys.stderr.write(f"{file.name} is stale: python -m krl.reference --write\n")
-            return 1
-    return 0
+def files() -> Mapping[Path, str]:
+    """Return the text of each page."""
+    return {PAGE: reference(), LIBRARY_PAGE: library_reference()}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main("krl.reference", files))

@@ -134,12 +134,3 @@ def products() -> Mapping[Path, str]:
         native / "program" / "isa.gen.h": _header(),
         document: _document(document.read_text(encoding="utf-8")),
     }
-
-
-def outdated() -> list[str]:
-    """Return the paths, in the repository, of generated files that are out of date."""
-    return [
-        path.relative_to(_ROOT).as_posix()
-        for path, text in products().items()
-        if not path.exists() or path.read_text(encoding="utf-8") != text
-    ]
