@@ -17,11 +17,7 @@ from itertools import count
 from string import ascii_lowercase, ascii_uppercase
 
 from grammar.notation.g4 import checked, unchecked
-from grammar.notation.line_style import (
-    with_ends_of_lines,
-    with_lines_of_rows,
-    with_rules_of_lines,
-)
+from grammar.notation.line_style import with_ends_of_lines, with_rules_of_lines
 from grammar.notation.model import (
     Alternative,
     Element,
@@ -53,7 +49,6 @@ def read_foreign(text: str, *, source: str = "grammar") -> Grammar:
         _with_tokens,
         _with_quoted_signs,
         _with_levels,
-        with_lines_of_rows,
         with_ends_of_lines,
         with_rules_of_lines,
     ):

@@ -8,7 +8,7 @@ which a line or a block of lines can be added, and blocks show what their bodies
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import count
 
 from grammar.notation.model import (
@@ -40,37 +40,21 @@ def with_ends_of_lines(grammar: Grammar) -> str:
     return spliced(grammar, changed)
 
 
-def with_lines_of_rows(grammar: Grammar) -> str:
-    """Return the text with a rule for what a line of a row has, if that is several elements."""
-    changed: dict[str, list[Splice]] = defaultdict(list)
-    names: list[str] = []
-    for rule in grammar.parser_rules:
-        for element in walk(rule):
-            match element:
-                case Repeat(
-                    item=Group(
-                        alternatives=(Alternative(elements=(first, *_, last, end)) as line,)
-                    ),
-                    operator="*" | "+",
-                ) if next((e for e in walk(line) if _is_end(grammar, e)), None) == end:
-                    names.append(_fresh(grammar, f"{rule.name}Entry", names))
-                    start, stop, place = first.span[0], last.span[1], len(rule.text)
-                    text = f"\n\n{names[-1]}\n    : {rule.text[start:stop]}\n    ;"
-                    changed[rule.name] += [(start, stop, names[-1]), (place, place, text)]
-    return spliced(grammar, changed)
-
-
 def with_rules_of_lines(grammar: Grammar) -> str:
     """Return the text with a rule for the lines of each row ``(x NL)*``, if there are none yet."""
     if any(_has_lines(grammar, rule) for rule in grammar.parser_rules):
         return grammar.text
     changed: dict[str, list[Splice]] = defaultdict(list)
     names: dict[str, str] = {}
-    rows = [(r, row, line, f"{line} {r.source_of(end)}") for r, row, line, end in _rows(grammar)]
+    rows = [
+        (r, row, _line_rule(line), " ".join(map(r.source_of, (*line, end))))
+        for r, row, line, end in _rows(grammar)
+    ]
     for rule, row, line, text in rows:
         if text not in names:
-            names[text] = _fresh(grammar, f"{line}Line", names.values())
-            changed[line].append((0, 0, f"{names[text]}\n    : {text}\n    ;\n\n"))
+            of = line or rule.name
+            names[text] = _fresh(grammar, f"{of}Line", names.values())
+            changed[of].append((0, 0, f"{names[text]}\n    : {text}\n    ;\n\n"))
         changed[rule.name].append((*row.span, f"{names[text]}{row.operator}"))
     lines = {line for _, _, line, _ in rows}  # rows call these by their names
     written_out = {
@@ -86,21 +70,36 @@ def with_rules_of_lines(grammar: Grammar) -> str:
     for rule in grammar.parser_rules:
         calls = [e for e in walk(rule) if isinstance(e, Reference) and e.name in written_out]
         changed[rule.name] += ((*e.span, written_out[e.name]) for e in calls)
-    changed |= {name: [(0, len(grammar.by_name[name].text), "")] for name in written_out}
+    for name in written_out:
+        ahead = (splice for splice in changed[name] if not splice[1])
+        changed[name] = [*ahead, (0, len(grammar.by_name[name].text), "")]
     return spliced(grammar, changed)
 
 
-def _rows(grammar: Grammar) -> Iterator[tuple[Rule, Repeat, str, Element]]:
-    """Yield the rows ``(x NL)*`` of a rule ``x``: rule, row, ``x`` and the end of the line."""
+def _rows(
+    grammar: Grammar,
+) -> Iterator[tuple[Rule, Repeat, tuple[Element, ...], Element]]:
+    """Yield the rows ``(x NL)*`` of a rule ``x`` or of what is written out in it.
+
+    Each with its rule, the elements of a line, and the end of the line.
+    """
     for rule in grammar.parser_rules:
         for element in walk(rule):
             match element:
                 case Repeat(
-                    item=Group(alternatives=(Alternative(elements=(Reference() as line, end)),)),
+                    item=Group(alternatives=(Alternative(elements=(*line, end)),)),
                     operator="*" | "+",
-                ):
-                    if _is_end(grammar, end) and not line.is_token:
-                        yield rule, element, line.name, end
+                ) if next((e for e in walk(element) if _is_end(grammar, e)), None) == end:
+                    if len(line) > 1 or _line_rule(line):
+                        yield rule, element, tuple(line), end
+
+
+def _line_rule(line: Sequence[Element]) -> str:
+    """Return the rule that a line is; empty if it is anything else."""
+    match line:
+        case (Reference(name=name, is_token=False),):
+            return name
+    return ""
 
 
 def _has_lines(grammar: Grammar, rule: Rule) -> bool:
