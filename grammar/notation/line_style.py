@@ -60,7 +60,9 @@ def with_rules_of_lines(grammar: Grammar) -> str:
     written_out = {
         rule.name: f"{names[text]}{row.operator}"
         for rule, row, _, text in rows
-        if rule is not grammar.parser_rules[0] and rule.name not in lines and _is_only(rule, row)
+        if rule is not grammar.parser_rules[0]
+        and rule.name not in lines
+        and [a.elements for a in rule.alternatives] == [(row,)]
     }
     for rule in grammar.parser_rules:
         for element in walk(rule):
@@ -131,11 +133,6 @@ def _repeated(element: Element) -> str:
         case Repeat(item=Reference(name=name, is_token=True), operator="+"):
             return name
     return ""
-
-
-def _is_only(rule: Rule, row: Repeat) -> bool:
-    """Return whether a row is all that a rule has."""
-    return len(rule.alternatives) == 1 and rule.alternatives[0].elements == (row,)
 
 
 def _fresh(grammar: Grammar, wanted: str, taken: Iterable[str] = ()) -> str:

@@ -234,15 +234,12 @@ class OperandRules:
                 found |= {rule: example, f"'{sign}'": example}
         return found
 
-    def words_in_brackets(self, opening: int) -> frozenset[int]:
+    @cached_property
+    def words_in_brackets(self) -> Mapping[int, frozenset[int]]:
         """Reserved words that rules of no operands write in brackets, by the opening token.
 
         What they have as names, or in operands, is left out.
         """
-        return self._words_in_brackets.get(opening, frozenset())
-
-    @cached_property
-    def _words_in_brackets(self) -> Mapping[int, frozenset[int]]:
         skipped = {*self.recursive, *self.ladder, self.names, *self.type_rules}
         called = {name: some for name, some in self._called.items() if name not in skipped}
         kind_of, found = self.lexer.kind_of, defaultdict[int, set[int]](set)

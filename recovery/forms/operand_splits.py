@@ -33,7 +33,7 @@ def _no_calls(rules: OperandRules, symbol: Symbol) -> Iterator[str]:
     """Yield the brackets of an operand that have a word in them that is no operand."""
     kinds = symbol.operand.kinds if symbol.operand else ()
     for start, kind in enumerate(kinds):
-        if not rules.words_in_brackets(kind).isdisjoint(kinds[start + 1 :]):
+        if not rules.words_in_brackets.get(kind, frozenset()).isdisjoint(kinds[start + 1 :]):
             yield rules.lexer.display[kind]
 
 

@@ -59,10 +59,6 @@ class Timeline:
         """Return whether it parses under the grammar with this number."""
         return not self.whenever >> number & 1
 
-    def lines(self, number: int) -> list[int]:
-        """Return the lines that fail under the grammar with this number."""
-        return [line for line, when in self.failing.items() if when >> number & 1]
-
 
 def contents_of(roots: Sequence[Path]) -> tuple[list[SurveyedFile], list[Skipped]]:
     """Return the distinct contents below ``roots``, in the order of discovery, and those skipped.

@@ -171,7 +171,8 @@ def undeclared_elsewhere(view: GrammarView) -> Iterator[InferredStep]:
         optional = list(takewhile(is_optional, elements))
         rest = elements[len(optional) :]
         if len(rest) > 1 and view.is_kind(rest[0]) and view.is_name(rest[1]):
-            free[rule.name] |= {"", *_words_in(optional)}
+            words = {e.name for o in optional for e in walk(o) if isinstance(e, Reference)}
+            free[rule.name] |= {"", *words}
     for host, number, ahead, behind in typed if free else ():
         if not {"", *ahead.replace("?", "").split()} <= free[host]:
             elements = view.alternative(host, number).elements
@@ -288,11 +289,6 @@ def _is_part(view: GrammarView, behind: Iterable[Element]) -> bool:
         case None:
             return False
     return True
-
-
-def _words_in(elements: Iterable[Element]) -> set[str]:
-    """Return the names of tokens in elements."""
-    return {e.name for some in elements for e in walk(some) if isinstance(e, Reference)}
 
 
 def _words_ahead(view: GrammarView, rule: Rule, address: Address, place: int) -> frozenset[str]:

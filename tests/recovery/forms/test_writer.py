@@ -280,7 +280,7 @@ def test_words_that_only_other_rules_have_in_brackets(inside: str, words: set[st
     more = "side : LEFT | RIGHT ;\n\nsort : NAME | LIST ;\n\nLIST :"
     rules = OperandRules(Recognizer(read(text.replace("LIST :", more, 1))))
     lexer = rules.lexer
-    found = rules.words_in_brackets(lexer.kind_of["LPAREN"])
+    found = rules.words_in_brackets[lexer.kind_of["LPAREN"]]
     assert words == {lexer.names[kind] for kind in found}
 
 
