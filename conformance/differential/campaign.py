@@ -7,7 +7,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import count, takewhile
 from platform import node
 from types import MappingProxyType
@@ -55,41 +55,30 @@ class Finding:
     statements: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Findings:
-    """The result of a campaign; ``ends`` counts how programs ended.
+    """The result of a campaign, or of a part of it; ``ends`` counts how programs ended.
 
     A program that the check rejects ends with "LinkError". ``counts`` has, among others, the number
     of programs that reached each of the ``rules``, with the kind "rule".
     """
 
-    programs: int
     seed: int
     executors: tuple[str, ...]
-    findings: tuple[Finding, ...]
-    counts: Counts
-    ends: Counter[str]
-    facts: int
     rules: Needs
+    programs: int = 0
+    findings: list[Finding] = field(default_factory=list)
+    counts: Counts = field(default_factory=Counter)
+    ends: Counter[str] = field(default_factory=Counter)
+    facts: int = 0
 
-
-@dataclass(frozen=True, slots=True)
-class _Shard:
-    """The unit of work of a process: programs from ``first`` to before ``end``."""
-
-    seed: int
-    first: int
-    end: int
-    executors: tuple[str, ...]
-    rules: Needs
-
-
-@dataclass(frozen=True, slots=True)
-class _ShardResult:
-    findings: list[Finding]
-    counts: Counts
-    ends: Counter[str]
-    facts: int
+    def add(self, other: Findings) -> None:
+        """Add the result of another part."""
+        self.programs += other.programs
+        self.findings += other.findings
+        self.counts.update(other.counts)
+        self.ends.update(other.ends)
+        self.facts += other.facts
 
 
 def world_seed(seed: int, number: int, attempt: int = 0) -> str:
@@ -117,31 +106,20 @@ def fuzz(
 
     Raises `support.parallel.workers.WorkersError`, also if a worker does not have these executors.
     """
-    names = tuple(executors)
-    wanted = dict(rules)
-    shards = [
-        _Shard(seed, first, min(first + _SHARD, programs), names, wanted)
-        for first in range(0, programs, _SHARD)
-    ]
+    given = seed, tuple(executors), dict(rules)
+    whole = Findings(*given)
+    numbers = range(programs)
+    shards = [numbers[first : first + _SHARD] for first in range(0, programs, _SHARD)]
     end = float("inf") if minutes is None else time.monotonic() + 60 * minutes
-    tasks = ((shard,) for shard in takewhile(lambda _shard: time.monotonic() < end, shards))
-    findings: list[Finding] = []
-    counts: Counts = Counter()
-    ends: Counter[str] = Counter()
-    facts, run = 0, 0
+    started = takewhile(lambda _shard: time.monotonic() < end, shards)
+    tasks = ((*given, shard) for shard in started)
     done = ordered_map(_run, tasks, jobs=min(jobs, len(shards)), scheduler=scheduler)
-    for shard, outcome in zip(shards, done, strict=False):
-        run = shard.end
-        findings += outcome.findings
-        counts.update(outcome.counts)
-        ends.update(outcome.ends)
-        facts += outcome.facts
-        on_done(shard.end - shard.first)
-    reduced = [
-        _reduced(one, seed, names[0]) if place < _MOST_REDUCED else one
-        for place, one in enumerate(findings)
-    ]
-    return Findings(run, seed, names, tuple(reduced), counts, ends, facts, rules)
+    for part in done:
+        whole.add(part)
+        on_done(part.programs)
+    for place, one in enumerate(whole.findings[:_MOST_REDUCED]):
+        whole.findings[place] = _reduced(one, seed, whole.executors[0])
+    return whole
 
 
 #: Counts the shards that this process has run.
@@ -165,38 +143,38 @@ def _gc_relaxed() -> Iterator[None]:
         gc.unfreeze()
 
 
-def _run(shard: _Shard) -> _ShardResult:
-    absent = [name for name in shard.executors if not is_available(name)]
+def _run(seed: int, executors: tuple[str, ...], rules: Needs, numbers: range) -> Findings:
+    """Return the result of the programs with some numbers; a process does that at once."""
+    absent = [name for name in executors if not is_available(name)]
     if absent:
         raise WorkersError(f"a worker on {node()} has no executor {min(absent)}")
     if next(_shards_run) % _LIFE == 0:
         builder.cache_clear()
+    found = Findings(seed, executors, rules, len(numbers))
     with _gc_relaxed():
-        return _run_all(shard)
+        for number in numbers:
+            _run_program(found, number)
+    return found
 
 
-def _run_all(shard: _Shard) -> _ShardResult:
-    found = _ShardResult([], Counter(), Counter(), 0)
-    facts = 0
-    for number in range(shard.first, shard.end):
-        files = seeded(shard.seed, number).files
-        program = loaded(files)
-        if program is None:
-            found.ends["LinkError"] += 1
-            continue
-        world = world_seed(shard.seed, number)
-        reference, *others = shard.executors
-        expected = trace_of(program, EXECUTORS[reference], world)
-        for name in others:
-            where = diverged(program, name, expected, world)
-            if where is not None:
-                found.findings.append(Finding(number, where, files))
-        executed = counted(program, expected)
-        found.counts.update(executed)
-        found.counts.update(("rule", rule) for rule in reached(shard.rules, executed))
-        found.ends[str(expected[-1][0])] += 1
-        facts += len(expected)
-    return _ShardResult(found.findings, found.counts, found.ends, facts)
+def _run_program(found: Findings, number: int) -> None:
+    files = seeded(found.seed, number).files
+    program = loaded(files)
+    if program is None:
+        found.ends["LinkError"] += 1
+        return
+    world = world_seed(found.seed, number)
+    reference, *others = found.executors
+    expected = trace_of(program, EXECUTORS[reference], world)
+    for name in others:
+        where = diverged(program, name, expected, world)
+        if where is not None:
+            found.findings.append(Finding(number, where, files))
+    executed = counted(program, expected)
+    found.counts.update(executed)
+    found.counts.update(("rule", rule) for rule in reached(found.rules, executed))
+    found.ends[str(expected[-1][0])] += 1
+    found.facts += len(expected)
 
 
 def _reduced(finding: Finding, seed: int, reference: str) -> Finding:

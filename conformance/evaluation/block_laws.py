@@ -16,14 +16,14 @@ from typing import Final
 
 import numpy as np
 
+from conformance.evaluation.laws import OVERRIDE, STOP, Deviations, Laws, Run, Subjects
 from conformance.evaluation.motions import Array, EndedMotion
-from conformance.evaluation.path_geometry import TOLERANCE_MM, change_rates
-from conformance.evaluation.run_laws import Violation
-from conformance.evaluation.spline_laws import Segment, chains_of, segments_of
+from conformance.evaluation.path_geometry import TOLERANCE_MM, change_rates, lengths
+from conformance.evaluation.spline_laws import Segment, blocks_from_rest, chains_of, segments_of
 from interp.port.requests import SplineRange
 from interp.robot.arm import Motion
-from interp.robot.kinematics.placement import IpoMode
 
+LAWS: Final = Laws(OVERRIDE, STOP)
 #: Seconds within which a part of a TIME_BLOCK takes its share, as its ends lie between samples; and
 #: the share of its speed or acceleration that one uses which cannot be as quick.
 _SHARE_SECONDS: Final = 0.015
@@ -53,12 +53,12 @@ class _Block:
     def times(self) -> Array:
         """The times in s at its points."""
         one = self.one
-        return np.concatenate(([one.start], one.path.times[one.rows], [one.end])) / 1e6
+        return np.concatenate(([one.start], one.times, [one.end])) / 1e6
 
     @cached_property
     def ways(self) -> Array:
         """The lengths in mm at its points."""
-        sums = np.cumsum([0.0, *np.linalg.norm(np.diff(self.points, axis=0), axis=1)])
+        sums = lengths(self.points)
         ways: Array = sums * (self.ends[-1] / sums[-1])
         return ways
 
@@ -70,36 +70,26 @@ class _Block:
     @cached_property
     def speeds(self) -> Array:
         """The speeds in mm/s between its points, without the first and the last piece."""
-        return change_rates(self.one.path.times[self.one.rows], self.ways[1:-1, None])[:, 0]
+        return change_rates(self.one.times, self.ways[1:-1, None])[:, 0]
 
 
-def block_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
-    """Yield spline blocks from rest to rest, at an override of 100, that break a law."""
-    for one in motions:
-        parts = one.motion.parts
-        if not (parts and one.begins and one.stops) or len(one.tools) < 2:
-            continue
-        first, last = one.poses(one.ends)[:, :3, 3]
-        segments = segments_of(first, parts)
-        if segments is None or one.motion.settings.placement.mode is not IpoMode.BASE:
-            continue
-        points = np.concatenate((first[None], one.tools[:, :3, 3], last[None]))
-        block = _Block(one, segments, points)
-        yield from _time_block_violations(block)
-        yield from _constant_speed_violations(block)
-        yield from _stops(block)
+def _blocks(run: Run) -> Subjects[_Block]:
+    for event, one in blocks_from_rest(run):
+        first, last = one.points(one.ends)
+        segments = segments_of(first, one.motion.parts)
+        if segments is not None and one.is_in_base:
+            points = np.concatenate((first[None], one.tools[:, :3, 3], last[None]))
+            yield event, _Block(one, segments, points)
 
 
 # ------------------------------------------------------------------------------------ TIME_BLOCK
 
 
-def _time_block_violations(block: _Block) -> Iterator[Violation]:
-    """Yield parts of a TIME_BLOCK that do not take their shares of its time.
-
-    A part may take longer that uses the programmed speed or acceleration.
-    """
+@LAWS.law("a part of a TIME_BLOCK takes its share, or as long as it needs", of=_blocks)
+def _wrong_share(block: _Block) -> Deviations:
+    """A part may take longer that uses the programmed speed or acceleration."""
     motion, times, passed = block.one.motion, block.times, block.passed
-    gains = change_rates(block.one.path.times[block.one.rows][1:], block.speeds[:, None])[:, 0]
+    gains = change_rates(block.one.times[1:], block.speeds[:, None])[:, 0]
     for begin, end, wanted in _shares_of_time(motion):
         took = passed[end] - passed[begin]
         settings = motion.parts[begin].settings or motion.settings
@@ -108,8 +98,7 @@ def _time_block_violations(block: _Block) -> Iterator[Violation]:
         steepest = np.abs(gains[own[1:]]).max(initial=0.0) / (settings.acceleration * 1000.0)
         is_full = max(fastest, steepest) > _FULL
         if took < wanted - _SHARE_SECONDS or (took > wanted + _SHARE_SECONDS and not is_full):
-            law = "a part of a TIME_BLOCK takes its share, or as long as it needs"
-            yield block.one.broken(law, f"{took:.3f} s, not {wanted:.3f} s")
+            yield f"{took:.3f} s, not {wanted:.3f} s"
 
 
 def _shares_of_time(motion: Motion) -> Iterator[tuple[int, int, float]]:
@@ -137,8 +126,8 @@ def _marks(motion: Motion, keyword: str) -> Iterator[tuple[int, SplineRange]]:
 # ------------------------------------------------------------------------------------- CONST_VEL
 
 
-def _constant_speed_violations(block: _Block) -> Iterator[Violation]:
-    """Yield ranges of CONST_VEL that are not travelled at the speed of their slowest segment."""
+@LAWS.law("a range of CONST_VEL has the speed of its slowest segment", of=_blocks)
+def _not_constant(block: _Block) -> Deviations:
     motion, ways = block.one.motion, block.ways[1:-1]
     for first, last in _constant_ranges(block):
         if last <= first:
@@ -152,8 +141,7 @@ def _constant_speed_violations(block: _Block) -> Iterator[Violation]:
         own = block.speeds[inside[:-1] & inside[1:]]
         off = float(np.abs(own / speed - 1.0).max(initial=0.0))
         if off > _SAME:
-            law = "a range of CONST_VEL has the speed of its slowest segment"
-            yield block.one.broken(law, f"{off:.1%} off {speed:.1f} mm/s")
+            yield f"{off:.1%} off {speed:.1f} mm/s"
 
 
 def _constant_ranges(block: _Block) -> Iterator[tuple[float, float]]:
@@ -174,21 +162,27 @@ def _constant_ranges(block: _Block) -> Iterator[tuple[float, float]]:
 # ------------------------------------------------------------------------------------------ stops
 
 
-def _stops(block: _Block) -> Iterator[Violation]:
-    """Yield a place without a corner or STOP WHEN PATH at which the arm stands, or nearly so."""
-    corners = [block.ends[first] for first, _ in chains_of(block.segments)[1:]]
+def _corners(block: _Block) -> list[float]:
+    """Return the lengths in mm at which a block has to stop."""
+    return [block.ends[first] for first, _ in chains_of(block.segments)[1:]]
+
+
+@LAWS.law("within a block the arm stands at corners and at STOP WHEN PATH only", of=_blocks)
+def _stopped(block: _Block) -> Deviations:
     lines = np.concatenate([segment.points for segment in block.segments])
-    sums = np.cumsum([0.0, *np.linalg.norm(np.diff(lines, axis=0), axis=1)])
-    wanted = np.clip([*corners, *_stop_places(block)], 0.0, block.ends[-1])
-    places = np.stack([np.interp(wanted, sums, column) for column in lines.T], axis=1)
+    wanted = np.clip([*_corners(block), *_stop_places(block)], 0.0, block.ends[-1])
+    places = np.stack([np.interp(wanted, lengths(lines), column) for column in lines.T], axis=1)
     steps = np.linalg.norm(np.diff(block.points, axis=0), axis=1)
     for row in np.flatnonzero(steps[1:-1] < _STILL) + 1:
         if np.linalg.norm(places - block.points[row], axis=1).min(initial=math.inf) > TOLERANCE_MM:
-            law = "within a block the arm stands at corners and at STOP WHEN PATH only"
-            yield block.one.broken(law, f"it stands {block.ways[row]:.3f} mm behind its start")
+            yield f"it stands {block.ways[row]:.3f} mm behind its start"
             return
-    between = block.times[2:-1]
-    if len(wanted) > len(corners):
+
+
+@LAWS.law("within a block the arm keeps moving where its path goes straight on", of=_blocks)
+def _nearly_stopped(block: _Block) -> Deviations:
+    between, corners = block.times[2:-1], _corners(block)
+    if list(_stop_places(block)):
         return
     for number, end in enumerate(block.ends[1:-1], 1):
         sides = [
@@ -198,9 +192,7 @@ def _stops(block: _Block) -> Iterator[Violation]:
         nearest = int(np.searchsorted(between, block.passed[number]))
         slowest = float(block.speeds[max(nearest - 1, 0) : nearest + 2].min(initial=math.inf))
         if end not in corners and slowest < _KEPT * min(sides):
-            law = "within a block the arm keeps moving where its path goes straight on"
-            sought = f"{slowest:.2f} mm/s between {sides[0]:.1f} and {sides[1]:.1f}"
-            yield block.one.broken(law, sought)
+            yield f"{slowest:.2f} mm/s between {sides[0]:.1f} and {sides[1]:.1f}"
 
 
 def _stop_places(block: _Block) -> Iterator[float]:

@@ -9,23 +9,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import compress
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from conformance.evaluation.motions import (
-    NEAR_DEGREES,
-    ROUNDING,
-    Array,
-    EndedMotion,
-    follows,
-)
-from conformance.evaluation.path_geometry import arc_length, change_rates
-from conformance.evaluation.place_laws import axes_of
-from conformance.evaluation.run_laws import Violation
-from interp.robot.kinematics.placement import IpoMode
+from conformance.evaluation.laws import OVERRIDE, STOP, Deviations, Laws, Run, Subjects
+from conformance.evaluation.motions import NEAR_DEGREES, ROUNDING, Array, EndedMotion
+from conformance.evaluation.path_geometry import arc_length, rates_of
+from conformance.evaluation.programmed_paths import axes_of
 
+LAWS: Final = Laws(OVERRIDE, STOP)
 #: Fractions by which a duration may be shorter or longer than computed, and seconds: ends lie
 #: between two samples.
 _SHORTER, _LONGER, _AT_ENDS = 1e-4, 1e-5, 1e-4
@@ -57,14 +52,6 @@ _RAMP: Final = 0.08
 _Limits = tuple[float, float, float]
 
 
-def duration_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
-    """Yield motions with an implausible duration, in a run whose override is 100."""
-    for before, one in zip((None, *motions), motions, strict=False):
-        yield from _start_violations(before, one)
-        yield from _motion_violations(one, None if before is None else _known_way(before, one))
-    yield from _sequence_violations(motions)
-
-
 def seconds_of(length: float, speed: float, acceleration: float, jerk: float) -> float:
     """Return the shortest time in s for a length from rest to rest, with limited jerk."""
     ramp = ramp_seconds(speed, acceleration, jerk)
@@ -85,70 +72,96 @@ def ramp_seconds(speed: float, acceleration: float, jerk: float) -> float:
     return speed / acceleration + acceleration / jerk
 
 
-def _start_violations(before: EndedMotion | None, one: EndedMotion) -> Iterator[Violation]:
-    """Yield a motion from rest that does not begin at the microsecond from which it can.
+@dataclass(frozen=True)
+class _Timed:
+    """A motion, and the one before it of those that came to their end."""
 
-    That is when it is planned, or when the motion before ends.
-    """
-    if not one.begins or one.is_held or (before is not None and not follows(before, one)):
+    before: EndedMotion | None
+    one: EndedMotion
+
+    @property
+    def took(self) -> float:
+        """Its duration in s."""
+        return (self.one.end - self.one.start) / 1e6
+
+    @cached_property
+    def way(self) -> Array | None:
+        """The movement of the axes in a PTP between two targets that are given as axes."""
+        before, one = self.before, self.one
+        if before is None or not before.stops or not one.begins or not one.follows(before):
+            return None
+        if before.motion.parts or not one.is_ptp:
+            return None
+        unknown = np.full(one.ends.shape[1], math.nan)
+        start = axes_of(before, unknown)
+        end = axes_of(one, unknown if start is None else start)
+        way = None if start is None or end is None else end - start
+        return None if way is None or np.isnan(way).any() else way
+
+    def off(self, limits: _Limits | None, *, may_be_slow: bool) -> Deviations:
+        """Yield that it is faster than its limits allow, or slower without a reason.
+
+        If the program tells the way of its axes, microseconds count.
+        """
+        if limits is None:
+            return
+        if min(limits) <= 0.0:
+            yield "it has no speed or no acceleration"
+            return
+        took, wanted = self.took, seconds_of(1.0, *limits)
+        cycle = np.diff(self.one.path.times[-2:]).item() / 1e6
+        beside = _BESIDE * cycle * min((cycle / ramp_seconds(*limits)) ** 2, 1.0)
+        shorter, longer = (part * wanted + _AT_ENDS + beside for part in (_SHORTER, _LONGER))
+        if self.way is not None:
+            shorter = longer = _ROUNDED
+        elif max(took, wanted) < _SHORTEST:
+            return
+        if took < wanted - shorter or (not may_be_slow and took > wanted + longer):
+            yield f"{took:.6f} s, not {wanted:.6f} s"
+
+
+def _timed(run: Run) -> Subjects[_Timed]:
+    pairs = zip((None, *run.free), run.free, strict=False)
+    return ((one.event, _Timed(before, one)) for before, one in pairs)
+
+
+@LAWS.law(
+    "a motion from rest begins as soon as it is planned and the one before has ended", of=_timed
+)
+def _late(timed: _Timed) -> Deviations:
+    """At the microsecond."""
+    before, one = timed.before, timed.one
+    if not one.begins or (before is not None and not one.follows(before)):
         return
     if before is None and one.motion.number > 1:
         return
     wanted = one.planned if before is None else max(one.planned, before.end)
     if one.start != wanted:
-        law = "a motion from rest begins as soon as it is planned and the one before has ended"
-        yield one.broken(law, f"{one.start} us, not {wanted} us")
+        yield f"{one.start} us, not {wanted} us"
 
 
-def _motion_violations(one: EndedMotion, way: Array | None) -> Iterator[Violation]:
-    """Yield a PTP that differs from the time of its axes [MOT-20], or an implausible LIN or CIRC.
+def _is_from_rest(one: EndedMotion) -> bool:
+    return one.begins and one.stops and not one.motion.parts
 
-    Implausible is faster than speed and acceleration allow, or slower although all axes are far
-    from their limits. ``way`` is the movement of the axes if the program tells it: then
-    microseconds count.
+
+@LAWS.law("a PTP is as quick as its axes allow", "MOT-20", of=_timed)
+def _wrong_time_of_axes(timed: _Timed) -> Deviations:
+    one = timed.one
+    if one.is_ptp and _is_from_rest(one):
+        limits = _limits_of_axes(one, one.ends[1] - one.ends[0] if timed.way is None else timed.way)
+        yield from timed.off(limits, may_be_slow=one.motion.settings.is_reduced)
+
+
+@LAWS.law("a path takes what its speed and acceleration allow", of=_timed)
+def _wrong_time_of_path(timed: _Timed) -> Deviations:
+    """It may be slower if an axis is not far from its limits.
+
+    The jerk of S motions ends within a sample, so axes may limit it unseen.
     """
-    motion = one.motion
-    took = (one.end - one.start) / 1e6
-    if not one.begins or not one.stops or motion.parts:
-        return
-    is_free = True
-    if motion.kind in ("PTP", "SPTP"):
-        limits = _limits_of_axes(one, one.ends[1] - one.ends[0] if way is None else way)
-        law, rule = "a PTP is as quick as its axes allow", "MOT-20"
-        is_free = not motion.settings.is_reduced
-    else:
-        limits = _limits_of_path(one)
-        law, rule = "a path takes what its speed and acceleration allow", ""
-        # The jerk of S motions ends within a sample, so axes may limit it unseen.
-        is_free = motion.kind[0] != "S" and _largest_load(one) < _IDLE
-    if limits is None:
-        return
-    if min(limits) <= 0.0:
-        yield one.broken(law, "it has no speed or no acceleration", rule)
-        return
-    wanted = seconds_of(1.0, *limits)
-    cycle = np.diff(one.path.times[-2:]).item() / 1e6
-    beside = _BESIDE * cycle * min((cycle / ramp_seconds(*limits)) ** 2, 1.0)
-    shorter, longer = (part * wanted + _AT_ENDS + beside for part in (_SHORTER, _LONGER))
-    if way is not None:
-        shorter = longer = _ROUNDED
-    elif max(took, wanted) < _SHORTEST:
-        return
-    if took < wanted - shorter or (is_free and took > wanted + longer):
-        yield one.broken(law, f"{took:.6f} s, not {wanted:.6f} s", rule)
-
-
-def _known_way(before: EndedMotion, one: EndedMotion) -> Array | None:
-    """Return the movement of the axes in a PTP between two targets that are given as axes."""
-    if not before.stops or not one.begins or not follows(before, one) or before.is_held:
-        return None
-    if before.motion.parts or one.motion.parts or one.motion.kind not in ("PTP", "SPTP"):
-        return None
-    unknown = np.full(one.ends.shape[1], math.nan)
-    start = axes_of(before, unknown)
-    end = axes_of(one, unknown if start is None else start)
-    way = None if start is None or end is None else end - start
-    return None if way is None or np.isnan(way).any() else way
+    one = timed.one
+    if not one.is_ptp and _is_from_rest(one):
+        may_be_slow = one.motion.kind[0] == "S" or _largest_load(one) >= _IDLE
+        yield from timed.off(_limits_of_path(one), may_be_slow=may_be_slow)
 
 
 def _limits_of_axes(one: EndedMotion, way: Array) -> _Limits | None:
@@ -177,7 +190,7 @@ def _limits_of_path(one: EndedMotion) -> _Limits | None:
     turned = first[:3, :3].T @ last[:3, :3]
     swivel = math.degrees(math.acos(min(max(turned[0, 0], -1.0), 1.0)))
     twist = 2.0 * math.atan2(abs(turned[2, 1] - turned[1, 2]), 1.0 + np.trace(turned))
-    is_known = settings.placement.mode is IpoMode.BASE and settings.orientation != "#JOINT"
+    is_known = one.is_in_base and settings.orientation != "#JOINT"
     if not is_known or way < 1.0 or ("CIRC" in motion.kind and swivel + twist > ROUNDING):
         return None
     speed = min(settings.velocity, most.velocity.path)
@@ -202,68 +215,75 @@ def _limits_of_path(one: EndedMotion) -> _Limits | None:
 
 def _largest_load(one: EndedMotion) -> float:
     """Return the largest fraction of a limit of speed, acceleration or jerk that an axis uses."""
-    rows, most = one.path.axes[one.rows], one.axis_rates
-    if most is None or len(rows) < (_OF_CIRCLE if "CIRC" in one.motion.kind else _OF_LINE):
+    most = one.axis_rates
+    if most is None or len(one.times) < (_OF_CIRCLE if "CIRC" in one.motion.kind else _OF_LINE):
         return math.inf
-    used = 0.0
-    for order, limits in enumerate(most):
-        rows = change_rates(one.path.times[one.rows][order:], rows)
-        used = max(used, float((np.abs(rows) / limits).max()))
-    return used
+    rates = zip(rates_of(one.times, one.axes), most, strict=True)
+    return max(float((np.abs(rows) / limits).max()) for rows, limits in rates)
 
 
 # ------------------------------------------------------------------------------ rows of motions
 
 
-def _sequences(motions: Sequence[EndedMotion]) -> Iterator[tuple[EndedMotion, ...]]:
-    """Yield the sequences of blended motions from rest to rest; most have a single motion."""
+@dataclass(frozen=True)
+class _Sequence:
+    """Blended motions from rest to rest, often a single one; ``others`` are all of the run."""
+
+    row: Sequence[EndedMotion]
+    others: Sequence[_Sequence]
+
+    @property
+    def took(self) -> int:
+        """Its duration in µs."""
+        return self.row[-1].end - self.row[0].start
+
+    @cached_property
+    def ends(self) -> Array:
+        """The axes at its start and end, (2, axes)."""
+        return np.array([self.row[0].ends[0], self.row[-1].ends[1]])
+
+    def single(self, way: Array) -> Iterator[tuple[EndedMotion, int]]:
+        """Yield single motions between two positions of the axes, with their µs, if it is long."""
+        if np.abs(np.diff(self.ends, axis=0)).max() > _FAR_DEGREES:
+            for each in self.others:
+                if len(each.row) == 1 and np.abs(each.ends - way).max() < NEAR_DEGREES:
+                    yield each.row[0], each.took
+
+
+def _sequences(run: Run) -> Subjects[_Sequence]:
     row: list[EndedMotion] = []
-    for one in motions:
-        row = [*row, one] if row and not one.begins and follows(row[-1], one) else [one]
-        if one.stops and row[0].begins:
-            yield tuple(row)
+    found: list[_Sequence] = []
+    for one in run.free:
+        row = [*row, one] if row and not one.begins and one.follows(row[-1]) else [one]
+        if one.stops and row[0].begins and not any(each.motion.parts for each in row):
+            found.append(_Sequence(row, found))
+    return ((each.row[0].event, each) for each in found)
 
 
-def _sequence_violations(motions: Sequence[EndedMotion]) -> Iterator[Violation]:
-    """Yield sequences whose duration contradicts that of other sequences of the same run.
-
-    A motion back takes as long as the motion there. Blended motions are no slower than the same
-    motions with exact stops, and, if all were planned before the first began and lie on a straight
-    line, no slower than a single motion.
-    """
-    rows = [row for row in _sequences(motions) if not any(one.motion.parts for one in row)]
-    if not rows:
-        return
-    ends = np.array([(row[0].ends[0], row[-1].ends[1]) for row in rows])  # (rows, 2, axes)
-    times = [row[-1].end - row[0].start for row in rows]
-    is_far = np.abs(ends[:, 1] - ends[:, 0]).max(axis=1) > _FAR_DEGREES
-    for row, way, took in compress(zip(rows, ends, times, strict=True), is_far):
-        one = row[0]
-        if len(row) == 1:
-            for other, known in _single_motions(way[::-1], rows, ends, times):
-                if _is_same_motion(one, other, is_back=True) and took > known * (1.0 + _BACK):
-                    law = "a way back takes the time of the way there"
-                    yield one.broken(law, f"{took} us, not {known} us")
-        elif row[-1].planned < one.start:
-            for other, known in _single_motions(way, rows, ends, times):
-                if took > known * _STRAIGHT + _TICKS and _is_straight((*row, other)):
-                    law = "points on a straight way cost no time"
-                    yield one.broken(law, f"{took} us, not {known} us")
-    for row, took in zip(rows, times, strict=True):
-        stops = _time_with_exact_stops(rows, row) if len(row) > 1 else None
-        if stops is not None and took > stops * _SLOWER:
-            law = "blended motions are no slower than exact ones"
-            yield row[0].broken(law, f"{took} us, not {stops} us")
+@LAWS.law("a way back takes the time of the way there", of=_sequences)
+def _slow_back(sequence: _Sequence) -> Deviations:
+    if len(sequence.row) == 1:
+        for other, known in sequence.single(sequence.ends[::-1]):
+            is_same = _is_same_motion(sequence.row[0], other, is_back=True)
+            if is_same and sequence.took > known * (1.0 + _BACK):
+                yield f"{sequence.took} us, not {known} us"
 
 
-def _single_motions(
-    way: Array, rows: Sequence[Sequence[EndedMotion]], ends: Array, times: Sequence[int]
-) -> Iterator[tuple[EndedMotion, int]]:
-    """Yield single motions between two positions of the axes (2, axes), with their µs."""
-    near = np.abs(ends - way).max(axis=(1, 2)) < NEAR_DEGREES
-    for row, took in compress(zip(rows, times, strict=True), near):
-        if len(row) == 1:
-            yield row[0], took
+@LAWS.law("points on a straight way cost no time", of=_sequences)
+def _slow_straight(sequence: _Sequence) -> Deviations:
+    """If all were planned before the first began."""
+    row, took = sequence.row, sequence.took
+    if len(row) > 1 and row[-1].planned < row[0].start:
+        for other, known in sequence.single(sequence.ends):
+            if took > known * _STRAIGHT + _TICKS and _is_straight((*row, other)):
+                yield f"{took} us, not {known} us"
+
+
+@LAWS.law("blended motions are no slower than exact ones", of=_sequences)
+def _slow_blended(sequence: _Sequence) -> Deviations:
+    stops = _time_with_exact_stops(sequence) if len(sequence.row) > 1 else None
+    if stops is not None and sequence.took > stops * _SLOWER:
+        yield f"{sequence.took} us, not {stops} us"
 
 
 def _is_same_motion(one: EndedMotion, other: EndedMotion, *, is_back: bool = False) -> bool:
@@ -303,16 +323,15 @@ def _is_straight(row: Sequence[EndedMotion]) -> bool:
     return bool(off < ROUNDING * 100.0 and (np.diff(shares[:-2]) > -ROUNDING).all())
 
 
-def _time_with_exact_stops(
-    rows: Sequence[Sequence[EndedMotion]], row: Sequence[EndedMotion]
-) -> int | None:
+def _time_with_exact_stops(sequence: _Sequence) -> int | None:
     """Return the µs of the same motions with exact stops, if the run has them."""
-    for place in range(len(rows) - len(row) + 1):
-        same = rows[place : place + len(row)]
+    size = len(sequence.row)
+    for place in range(len(sequence.others) - size + 1):
+        same = sequence.others[place : place + size]
         are_alike = all(
-            len(other) == 1 and _is_same_motion(one, other[0])
-            for one, other in zip(row, same, strict=True)
+            len(other.row) == 1 and _is_same_motion(one, other.row[0])
+            for one, other in zip(sequence.row, same, strict=True)
         )
-        if are_alike and np.abs(same[0][0].ends[0] - row[0].ends[0]).max() < NEAR_DEGREES:
-            return sum(one[0].end - one[0].start for one in same)
+        if are_alike and np.abs(same[0].ends[0] - sequence.ends[0]).max() < NEAR_DEGREES:
+            return sum(each.took for each in same)
     return None

@@ -14,25 +14,19 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Literal
 
-from conformance.evaluation.block_laws import block_violations
-from conformance.evaluation.duration_laws import duration_violations
-from conformance.evaluation.motion_laws import (
-    blend_speed_violations,
-    motion_violations,
-    slow_blends,
+from conformance.evaluation import (
+    blend_laws,
+    block_laws,
+    duration_laws,
+    motion_laws,
+    path_laws,
+    run_laws,
+    spline_laws,
+    trigger_laws,
 )
-from conformance.evaluation.motions import ended
+from conformance.evaluation.laws import OVERRIDE, STOP, Run
 from conformance.evaluation.observation import Finding, Observation
 from conformance.evaluation.path_expectations import evaluate_on_path
-from conformance.evaluation.path_laws import path_violations
-from conformance.evaluation.place_laws import (
-    blend_violations,
-    missing_blends,
-    trigger_violations,
-    wrong_blend_reports,
-)
-from conformance.evaluation.run_laws import run_violations
-from conformance.evaluation.spline_laws import spline_violations
 from conformance.evaluation.trace_expectations import Marks, evaluate_on_trace, unwatched
 from conformance.suite.case import Case
 from conformance.suite.expectations import KINDS, Expectation, expected_ending
@@ -61,6 +55,18 @@ class Check:
     is_absence: bool = False
 
 
+#: All laws, in the order in which they are reported.
+_LAWS = (
+    path_laws.LAWS,
+    run_laws.LAWS,
+    motion_laws.LAWS,
+    blend_laws.LAWS,
+    spline_laws.LAWS,
+    trigger_laws.LAWS,
+    duration_laws.LAWS,
+    block_laws.LAWS,
+    blend_laws.QUICK_LAWS,
+)
 _ROBOTS = ("none", "kinematic", "mujoco")
 
 
@@ -109,27 +115,10 @@ def _law_violations(case: Case, seen: Observation) -> Iterator[Check]:
     """Yield violations of laws that hold in every case: limits, shapes, order of events."""
     if not seen.is_exact:  # a recording has neither all events nor the machine data of its arm
         return
-    texts = (*case.io, *(source.text for source in case.sources))
-    slow, stopped = (
-        any(word in text.upper() for text in texts) for word in ("OV_PRO", "PRESS STOP")
-    )
-    motions = tuple(ended(seen))
-    free = [one for one in motions if not one.is_held]
-    broken = [
-        path_violations(seen),
-        run_violations(seen),
-        motion_violations(seen, motions),
-        blend_violations(free),
-        missing_blends(free),
-        wrong_blend_reports(seen, motions),
-        blend_speed_violations(free),
-        spline_violations(free),
-    ]
-    if not slow:
-        broken.append(trigger_violations(seen, free))
-    if not slow and not stopped:
-        broken += duration_violations(free), block_violations(free), slow_blends(free)
-    for one in chain(*broken):
+    texts = [text.upper() for text in (*case.io, *(source.text for source in case.sources))]
+    disturbing = (word for word in (OVERRIDE, STOP) if any(word in text for text in texts))
+    run = Run(seen, frozenset(disturbing))
+    for one in chain.from_iterable(laws.broken(run) for laws in _LAWS):
         file, line = (one.event.file, one.event.line) if one.event else ("", 0)
         is_sure = not one.rule or basis(one.rule).may_fail
         yield Check(file or case.main, line, one.law, "unmet", one.actual, is_sure, one.rule)
@@ -147,19 +136,17 @@ def evaluate_run(expectations: Sequence[Expectation], seen: Observation) -> list
     marks = _marks(expectations)
     found = []
     for one in expectations:
-        if _ROBOTS.index(one.needs) > _ROBOTS.index(seen.robot):
-            found.append(_check(one, "open", f"needs the robot {one.needs}"))
-            continue
         lacking = unwatched(one, seen)
-        if lacking:
-            found.append(_check(one, "open", f"{lacking} was not watched"))
-            continue
-        if one.is_absence and not seen.shows_run:
-            found.append(_check(one, "open", "nothing shows that the program was run"))
-            continue
-        is_of_path = KINDS[one.kind].robot != "none"
-        evaluated = evaluate_on_path if is_of_path else evaluate_on_trace
-        found.append(_check(one, *evaluated(one, seen, marks)))
+        if _ROBOTS.index(one.needs) > _ROBOTS.index(seen.robot):
+            found.append(_check(one, None, f"needs the robot {one.needs}"))
+        elif lacking:
+            found.append(_check(one, None, f"{lacking} was not watched"))
+        elif one.is_absence and not seen.shows_run:
+            found.append(_check(one, None, "nothing shows that the program was run"))
+        else:
+            is_of_path = KINDS[one.kind].robot != "none"
+            evaluated = evaluate_on_path if is_of_path else evaluate_on_trace
+            found.append(_check(one, *evaluated(one, seen, marks)))
     return found
 
 
@@ -171,7 +158,9 @@ def _marks(expectations: Sequence[Expectation]) -> Marks:
     )
 
 
-def _check(one: Expectation, state: State, actual: str = "") -> Check:
+def _check(one: Expectation, is_met: bool | None, actual: str) -> Check:
+    """Return a check of an expectation, which is open if it is ``None`` whether it is met."""
+    state: State = "open" if is_met is None else "met" if is_met else "unmet"
     return Check(one.file, one.line, one.text, state, actual, is_absence=one.is_absence)
 
 
@@ -184,16 +173,14 @@ def _check_finding(one: Expectation, seen: Observation) -> Check:
     match one.kind:
         case "accepted":
             grave = [found for found in seen.findings if found.severity != "note"]
-            return _check(one, "unmet" if grave else "met", _listed(grave))
+            return _check(one, not grave, _listed(grave))
         case "syntax":
-            first = seen.findings[0] if seen.findings else None
-            is_met = first is not None and (first.file, first.line) == (one.file, one.line)
-            return _check(one, "met" if is_met else "unmet", _listed(seen.findings) or "accepted")
+            is_met = seen.findings[:1] == tuple(there[:1]) != ()
+            return _check(one, is_met, _listed(seen.findings) or "accepted")
         case "silent":
-            is_met = all(found.code != one.arguments[0] for found in there)
-            return _check(one, "met" if is_met else "unmet", actual)
+            return _check(one, all(found.code != one.arguments[0] for found in there), actual)
     is_met = any((f.severity, f.code) == (one.kind, one.arguments[0]) for f in there)
-    return _check(one, "met" if is_met else "unmet", actual)
+    return _check(one, is_met, actual)
 
 
 def _check_recorded_finding(one: Expectation, seen: Observation, anywhere: bool) -> Check:
@@ -205,20 +192,19 @@ def _check_recorded_finding(one: Expectation, seen: Observation, anywhere: bool)
     motions.
     """
     in_file = [each for each in seen.findings if each.file == one.file]
-    places = (one.line, one.line + 1)
-    there = [each for each in in_file if anywhere or each.line in places]
+    there = [each for each in in_file if anywhere or each.line in (one.line, one.line + 1)]
     actual = _listed(seen.findings) or "accepted"
     code = one.arguments[0] if one.arguments else ""
     if one.kind in ("note", "silent") or code.startswith("KRL6"):
-        return _check(one, "open", "only our checker reports this")
+        return _check(one, None, "only our checker reports this")
     if one.kind == "accepted":
-        return _check(one, "unmet" if seen.findings else "met", actual)
+        return _check(one, not seen.findings, actual)
     is_late = Finding.may_come_late(code) or code.startswith("KRL5")
     if not there and (one.kind == "warning" or is_late):
-        return _check(one, "open", "a controller may report it when the program runs")
+        return _check(one, None, "a controller may report it when the program runs")
     codes = {_reported(found.code) for found in there}
     is_met = code in codes if code.startswith("KSS") and any(codes) else bool(there)
-    return _check(one, "met" if is_met else "unmet", actual)
+    return _check(one, is_met, actual)
 
 
 def _reported(code: str) -> str:
@@ -228,7 +214,7 @@ def _reported(code: str) -> str:
     return f"KSS{message.same_as}" if message is not None and message.same_as else code
 
 
-def _listed(findings: list[Finding] | tuple[Finding, ...]) -> str:
+def _listed(findings: Sequence[Finding]) -> str:
     return "; ".join(f"{one.file}:{one.line} {one.severity} {one.code}" for one in findings)
 
 

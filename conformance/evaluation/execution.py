@@ -64,12 +64,7 @@ class Setup:
 
 def observe(case: Case, setup: Setup) -> Observation:
     """Return the observation of a case. Never raises because of what a program does."""
-    match case.phase:
-        case "parse":
-            return _parsed(case)
-        case "check":
-            return _checked(case)
-    return _run(case, setup)
+    return _run(case, setup) if case.phase == "run" else _front_end(case)
 
 
 def observe_with(
@@ -79,32 +74,24 @@ def observe_with(
     return _run(case, Setup("tree", "none" if robot is None else "mujoco"), executor, robot)
 
 
-def _parsed(case: Case) -> Observation:
-    found: list[Finding] = []
-    for source in case.sources:
-        read = read_module(source.text, source.path)
-        if isinstance(read, list):
-            found += map(_finding, syntax_findings(read, source))
-    return Observation(findings=tuple(found))
-
-
-def _checked(case: Case) -> Observation:
-    """Return all findings, including those about the advance run; a case is a whole project."""
+def _front_end(case: Case) -> Observation:
+    """Return the findings of a case that is parsed, or of all checks; it is a whole project."""
     files: list[File] = []
-    found: list[Finding] = []
+    found: list[Diagnostic] = []
     for source in case.sources:
         read = read_module(source.text, source.path)
         if isinstance(read, list):
-            found += map(_finding, syntax_findings(read, source))
+            found += syntax_findings(read, source)
         else:
             files.append(File(source.path, read))
     sources = {source.path: source for source in case.sources}
-    for project, module in link(files, is_complete=True).modules():
-        found += map(_finding, _findings(project, module, sources[module.path]))
-    return Observation(findings=tuple(found))
+    for project, module in link(files, is_complete=True).modules() if case.phase == "check" else ():
+        found += _findings(project, module, sources[module.path])
+    return Observation(findings=tuple(map(_finding, found)))
 
 
 def _findings(project: Project, module: Module, source: Source) -> list[Diagnostic]:
+    """Return those about the advance run too."""
     done = check_module(project, module, source)
     known = (dict(done.types), dict(done.enumerations), dict(done.values))
     context = Context(project, module, source, done.resolution, System.load(), *known)

@@ -6,7 +6,7 @@ the kinematics that has produced the set-points.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Final
@@ -15,12 +15,12 @@ import numpy as np
 import numpy.typing as npt
 
 from conformance.evaluation.observation import Event, Observation
-from conformance.evaluation.path_geometry import between
-from conformance.evaluation.run_laws import Violation
-from interp.robot.arm import Motion
+from conformance.evaluation.path_geometry import between, change_rates
+from interp.robot.arm import Motion, Settings, Target
 from interp.robot.kinematics.chain import Chain
 from interp.robot.kinematics.kinematics import matrix_of
 from interp.robot.kinematics.machine_data import ROBOT_AXES, MachineData
+from interp.robot.kinematics.placement import IpoMode
 from interp.robot.simulation.tracking import PathRecord
 
 Array = npt.NDArray[np.float64]
@@ -30,6 +30,11 @@ ROUNDING: Final = 1e-4
 #: mm and degrees of tolerance for a position that is interpolated between two samples.
 NEAR_MM: Final = 0.5
 NEAR_DEGREES: Final = 0.2
+#: The components of a target that are its point, and its orientation.
+POINT: Final = ("X", "Y", "Z")
+ANGLES: Final = ("A", "B", "C")
+#: The events of a motion.
+_STAGES: Final = ("motion_planned", "motion_start", "motion_end", "blend_start", "blend_end")
 
 
 @dataclass(frozen=True)
@@ -52,6 +57,31 @@ class EndedMotion:
     path: PathRecord
     machine: MachineData
 
+    @property
+    def is_ptp(self) -> bool:
+        """Whether its axes have the speed, not the tool."""
+        return self.motion.kind in ("PTP", "SPTP")
+
+    @property
+    def is_in_base(self) -> bool:
+        """Whether the tool moves relative to the base, not the base relative to a fixed tool."""
+        return self.motion.settings.placement.mode is IpoMode.BASE
+
+    @property
+    def has_six(self) -> bool:
+        """Whether its arm can take any orientation."""
+        return self.machine.palletising is None and len(self.machine.chain.joints) == ROBOT_AXES
+
+    @property
+    def settings(self) -> list[Settings]:
+        """Its settings, then those of its parts that have their own."""
+        own = (part.settings for part in self.motion.parts if part.settings is not None)
+        return [self.motion.settings, *own]
+
+    def follows(self, before: EndedMotion) -> bool:
+        """Return whether it was planned directly after another motion."""
+        return self.motion.number == before.motion.number + 1
+
     @cached_property
     def rows(self) -> slice:
         """The rows of its samples outside of blends."""
@@ -69,7 +99,28 @@ class EndedMotion:
     @cached_property
     def tools(self) -> Array:
         """The tool relative to the base at its samples, (n, 4, 4)."""
-        return self.poses(self.path.axes[self.rows])
+        return self.poses(self.axes)
+
+    @property
+    def times(self) -> npt.NDArray[np.int64]:
+        """The times of its samples in µs."""
+        return self.path.times[self.rows]
+
+    @property
+    def axes(self) -> Array:
+        """The axes at its samples, (n, axes)."""
+        return self.path.axes[self.rows]
+
+    @cached_property
+    def speeds(self) -> Array:
+        """The speeds in m/s between its samples, of a base with a fixed tool [ORI-07]."""
+        poses = self.tools if self.is_in_base else np.linalg.inv(self.tools)
+        moves = change_rates(self.times, np.asarray(poses[:, :3, 3], dtype=np.float64))
+        return np.asarray(np.linalg.norm(moves, axis=1) / 1000.0)
+
+    def points(self, axes: Array) -> Array:
+        """Return X, Y and Z of the tool relative to the base, (n, 3), for axes (n, axes)."""
+        return self.poses(axes)[:, :3, 3]
 
     def poses(self, axes: Array) -> Array:
         """Return the tool relative to the base, (n, 4, 4), for axes (n, axes)."""
@@ -103,9 +154,13 @@ class EndedMotion:
             ]
         )
 
-    def broken(self, law: str, actual: str, rule: str = "") -> Violation:
-        """Return a violation at the line of the motion."""
-        return Violation(self.event, law, actual, rule)
+
+def stages(seen: Observation) -> Mapping[object, Mapping[str, Event]]:
+    """Return the first event of each kind of each motion, by number."""
+    found: dict[object, dict[str, Event]] = {}
+    for one in seen.of_kind(*_STAGES):
+        found.setdefault(one.fields.get("motion"), {}).setdefault(one.kind, one)
+    return found
 
 
 def ended(seen: Observation) -> Iterator[EndedMotion]:
@@ -126,16 +181,14 @@ def ended(seen: Observation) -> Iterator[EndedMotion]:
     )
     starts = [one.time or 0 for one in seen.of_kind("motion_start")]
     known = path.times[-1] + _cycle(path.times)
-    found: dict[tuple[str, object], Event] = {}
-    kinds = ("motion_planned", "motion_start", "motion_end", "blend_start", "blend_end")
-    for one in seen.of_kind(*kinds):
-        found.setdefault((one.kind, one.fields.get("motion")), one)
+    every = stages(seen)
     for begun, motion in path.motions:
-        event, end = (found.get((kind, motion.number)) for kind in ("motion_start", "motion_end"))
-        entered, left = (found.get((kind, motion.number)) for kind in ("blend_end", "blend_start"))
+        its = every.get(motion.number, {})
+        event, end = its.get("motion_start"), its.get("motion_end")
+        entered, left = its.get("blend_end"), its.get("blend_start")
         if event is None or end is None or end.time is None:
             continue
-        planned = found.get(("motion_planned", motion.number), event).time or 0
+        planned = its.get("motion_planned", event).time or 0
         is_held = any(planned <= time <= end.time for time in pauses)
         _, last_stop = max((each for each in stops if each[0] <= planned), default=(0, ""))
         if last_stop == "resume" and motion.kind.startswith("CIRC"):
@@ -149,9 +202,16 @@ def ended(seen: Observation) -> Iterator[EndedMotion]:
             yield EndedMotion(motion, event, planned, start, last, *ends, is_held, path, machine)
 
 
-def follows(one: EndedMotion, other: EndedMotion) -> bool:
-    """Return whether the second motion was planned directly after the first."""
-    return other.motion.number == one.motion.number + 1
+def completed(target: Target, names: Sequence[str], before: Array) -> Array:
+    """Return components of a target; omitted ones keep their value [MOT-16]."""
+    return np.array([target.get(name, value) for name, value in zip(names, before, strict=True)])
+
+
+def point_of(target: Target | None) -> Array | None:
+    """Return the point of a target; ``None`` if it is incomplete."""
+    if target is None or not set(POINT) <= set(target):
+        return None
+    return np.array([target[name] for name in POINT])
 
 
 def _cycle(times: npt.NDArray[np.int64]) -> int:

@@ -8,7 +8,7 @@ observed path are the set-points in each interpolation cycle.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise, starmap
 from typing import Final
@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from conformance.evaluation.motions import stages
 from conformance.evaluation.observation import Observation
 from conformance.evaluation.path_geometry import (
     TOLERANCE_DEGREES,
@@ -48,22 +49,26 @@ _SPEED: Final = 0.01
 _TRACKING: Final = 0.5
 #: The largest factor by which differences of a path, recorded perhaps, may exceed a limit.
 _RATE_MARGIN: Final = 1.02
+_NO_PART: Final = False, "there is no part of the path between the blends"
+_NO_BLEND: Final = False, "there is no blend"
 
 
 @dataclass(frozen=True, slots=True)
 class _MotionPath:
-    """The motion of a line, with times in µs.
+    """The motion of a line, with times in µs, in a run.
 
     ``entered`` is the end of the blend before it, or its start. ``leave`` and ``join`` are the
     start and the end of the blend after it. With ``is_whole`` it is the path of the whole run.
     """
 
+    seen: Observation
+    marks: Marks
     path: PathRecord
     start: int
     end: int
     entered: int
-    leave: int | None
-    join: int | None
+    leave: int | None = None
+    join: int | None = None
     is_whole: bool = False
 
     @property
@@ -95,113 +100,113 @@ class _MotionPath:
         placed = (one for start, one in reversed(self.path.placements) if start <= time)
         return next(placed, Placement())
 
-    def own(self) -> Array:
-        """Return the samples of the tool between the blends."""
-        last = self.end if self.leave is None else self.leave
-        kept = (self.path.times >= self.entered) & (self.path.times <= last)
-        return self.points[kept]
+    @property
+    def last(self) -> int:
+        """The end of the blend after it, or its end."""
+        return self.end if self.join is None else self.join
 
-    def stretches(self) -> Iterator[slice]:
-        """Yield rows with the same frames and tool; points of different rows are not comparable."""
-        if not self.is_whole:
-            kept = np.flatnonzero(
-                self.within(self.start, self.end if self.join is None else self.join)
-            )
-            yield slice(int(kept[0]), int(kept[-1]) + 1) if len(kept) else slice(0)
-            return
-        times = [time for time, _ in self.path.placements]
-        bounds = sorted(
-            {0, *np.searchsorted(self.path.times, times).tolist(), len(self.path.times)}
-        )
-        yield from starmap(slice, pairwise(bounds))
+    @property
+    def own(self) -> npt.NDArray[np.bool_]:
+        """Which samples lie between its blends."""
+        return self.within(self.entered, self.end if self.leave is None else self.leave)
+
+    @property
+    def whole(self) -> npt.NDArray[np.bool_]:
+        """Which samples are its own or in the blend after it."""
+        return self.within(self.start, self.last)
 
     def within(self, start: int, end: int) -> npt.NDArray[np.bool_]:
         """Return which samples lie between two times."""
         kept: npt.NDArray[np.bool_] = (self.path.times >= start) & (self.path.times <= end)
         return kept
 
+    def stretches(self) -> Iterator[slice]:
+        """Yield rows with the same frames and tool; points of different rows are not comparable."""
+        bounds = np.flatnonzero(self.whole)[[0, -1]] + [0, 1] if self.whole.any() else [0, 0]
+        if self.is_whole:
+            changes = np.searchsorted(self.path.times, [time for time, _ in self.path.placements])
+            bounds = np.union1d(bounds, changes)
+        yield from starmap(slice, pairwise(bounds))
+
+
+_Evaluate = Callable[[Expectation, _MotionPath], Evaluated]
+#: How expectations about a path are evaluated, by kind.
+_EVALUATORS: Final[dict[str, _Evaluate]] = {}
+
+
+def _evaluates(*kinds: str) -> Callable[[_Evaluate], None]:
+    """Return a decorator of a function that evaluates expectations of some kinds."""
+    return lambda evaluate: _EVALUATORS.update(dict.fromkeys(kinds, evaluate))
+
 
 def evaluate_on_path(one: Expectation, seen: Observation, marks: Marks) -> Evaluated:
     """Return whether an expectation about the path is met, with what was observed."""
     if seen.path is None:
-        return "open", "no path was recorded"
-    part = _motion_path(one, seen, seen.path)
+        return None, "no path was recorded"
+    part = _motion_path(one, seen, seen.path, marks)
     if part is None:
-        return "unmet", "the motion did not begin and end"
-    if one.kind in ("pose", "axes"):
-        return _position(one, seen, part, marks)
-    return _EVALUATORS[one.kind](one, seen, part)
+        return False, "the motion did not begin and end"
+    return _EVALUATORS[one.kind](one, part)
 
 
-def _motion_path(one: Expectation, seen: Observation, path: PathRecord) -> _MotionPath | None:
+def _motion_path(
+    one: Expectation, seen: Observation, path: PathRecord, marks: Marks
+) -> _MotionPath | None:
     if not one.file:
         first, last = int(path.times[0]), int(path.times[-1])
-        return _MotionPath(path, first, last, first, None, None, is_whole=True)
+        return _MotionPath(seen, marks, path, first, last, first, is_whole=True)
     starts = seen.on_line(one.file, one.line, "motion_start")
-    if not starts:
+    number = starts[-1].fields.get("motion") if starts else None
+    if number is None:
         return None
-    number = starts[-1].fields.get("motion")
-    times = {
-        (event.kind, event.fields.get("motion")): event.time
-        for event in seen.of_kind("motion_start", "motion_end", "blend_start", "blend_end")
-    }
-    start, end = times["motion_start", number], times.get(("motion_end", number))
-    if start is None or end is None or number is None:
+    every = stages(seen)
+    times = {kind: event.time for kind, event in every[number].items()}
+    start, end, leave = (times.get(kind) for kind in ("motion_start", "motion_end", "blend_start"))
+    if start is None or end is None:
         return None
-    entered = times.get(("blend_end", number))
-    leave = times.get(("blend_start", number))
-    join = None if leave is None else times.get(("blend_end", number + 1))
-    return _MotionPath(path, start, end, start if entered is None else entered, leave, join)
+    entered, joined = times.get("blend_end"), every.get(number + 1, {}).get("blend_end")
+    join = None if leave is None or joined is None else joined.time
+    entered = start if entered is None else entered
+    return _MotionPath(seen, marks, path, start, end, entered, leave, join)
 
 
 # ------------------------------------------------------------------------------------- places
 
 
 def _numbers(one: Expectation) -> Array:
-    found = []
-    for word in one.arguments:
-        try:
-            found.append(float(word))
-        except ValueError:
-            continue
-    return np.array(found)
+    return np.array([float(word) for word in one.arguments if word[-1].isdigit()])
 
 
 def _within_tolerance(
     one: Expectation, off: float, unit: str = "mm", usual: float = TOLERANCE_MM
 ) -> Evaluated:
-    margin = usual if one.tolerance is None else one.tolerance
-    return ("met" if off <= margin else "unmet"), f"{off:.4f} {unit} off"
+    return off <= one.margin(usual), f"{off:.4f} {unit} off"
 
 
-def _path(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
+@_evaluates("path")
+def _path(one: Expectation, part: _MotionPath) -> Evaluated:
     numbers = _numbers(one).reshape(-1, 3)
-    match one.arguments[0]:
-        case "joint":
-            return _joint(one, part)
-        case "blend":
-            if part.leave is None or part.join is None:
-                return "unmet", "there is no blend"
-            points = part.points[part.within(part.leave, part.join)]
-            off = from_arc(points, numbers[0], numbers[1], numbers[2])
-        case "circle":
-            points, off = part.own(), from_circle(part.own(), *numbers)
-        case _:
-            points, off = part.own(), from_line(part.own(), *numbers)
-    if not len(points):
-        return "unmet", "there is no part of the path between the blends"
-    return _within_tolerance(one, float(off.max()))
+    if one.arguments[0] == "joint":
+        return _joint(one, part)
+    if one.arguments[0] == "blend":
+        if part.leave is None or part.join is None:
+            return _NO_BLEND
+        points = part.points[part.within(part.leave, part.join)]
+        off = from_arc(points, *numbers)
+    else:
+        points = part.points[part.own]
+        off = (from_circle if one.arguments[0] == "circle" else from_line)(points, *numbers)
+    return _within_tolerance(one, float(off.max())) if len(points) else _NO_PART
 
 
 def _joint(one: Expectation, part: _MotionPath) -> Evaluated:
     """Check that all axes always have covered the same fraction of their way [MOT-01]."""
-    last = part.end if part.leave is None else part.leave
-    axes = part.path.axes[part.within(part.entered, last)][:, :6]
+    axes = part.path.axes[part.own][:, :6]
     if not len(axes):
-        return "unmet", "there is no part of the path between the blends"
+        return _NO_PART
     off = from_synchronous(axes)
     if off is None:
-        return "unmet", "no axis moves"
+        return False, "no axis moves"
     return _within_tolerance(one, off, "degrees", TOLERANCE_DEGREES)
 
 
@@ -210,8 +215,7 @@ def _distance(part: _MotionPath, point: Array) -> float:
     if part.is_whole:
         stretches = [_refined(part, rows) for rows in part.stretches()]
         return min(float(nearest(points[:-1], points[1:], point).min()) for points in stretches)
-    last = part.end if part.join is None else part.join
-    points = refined(part.path.times, part.points, part.start, last, 2_000)
+    points = refined(part.path.times, part.points, part.start, part.last, 2_000)
     return float(np.linalg.norm(points - point, axis=1).min())
 
 
@@ -221,7 +225,8 @@ def _refined(part: _MotionPath, rows: slice) -> Array:
     return refined(times, points, float(times[0]), float(times[-1]), 4 * len(times) + 2)
 
 
-def _avoids(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
+@_evaluates("avoids")
+def _avoids(one: Expectation, part: _MotionPath) -> Evaluated:
     """Check that the tip of the tool stays out of a zone in $WORLD, also between samples."""
     numbers = _numbers(one)
     zone, frame = (numbers[:-6], numbers[-6:]) if "in" in one.arguments else (numbers, np.zeros(6))
@@ -237,40 +242,42 @@ def _avoids(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluate
         if inside.any():
             first = rows.start + int(np.argmax(inside))
             at = " ".join(f"{number:.1f}" for number in part.path.tips[first])
-            return "unmet", f"inside at {part.path.times[first] / 1e6:.6f} s, from {at} on"
-    return "met", ""
+            return False, f"inside at {part.path.times[first] / 1e6:.6f} s, from {at} on"
+    return True, ""
 
 
-def _passes(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
+@_evaluates("passes")
+def _passes(one: Expectation, part: _MotionPath) -> Evaluated:
     return _within_tolerance(one, _distance(part, _numbers(one)))
 
 
-def _misses(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
+@_evaluates("misses")
+def _misses(one: Expectation, part: _MotionPath) -> Evaluated:
     *point, wanted = _numbers(one)
     off = _distance(part, np.array(point))
-    margin = wanted * 0.05 if one.tolerance is None else one.tolerance
-    return ("met" if abs(off - wanted) <= margin else "unmet"), f"{off:.4f} mm away"
+    return abs(off - wanted) <= one.margin(wanted * 0.05), f"{off:.4f} mm away"
 
 
-def _leaves(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
+@_evaluates("leaves", "joins")
+def _leaves(one: Expectation, part: _MotionPath) -> Evaluated:
     moment = part.leave if one.kind == "leaves" else part.join
     if moment is None:
-        return "unmet", "there is no blend"
+        return _NO_BLEND
     *point, wanted = _numbers(one)
     off = float(np.linalg.norm(part.at(moment) - np.array(point)))
-    margin = TOLERANCE_MM if one.tolerance is None else one.tolerance
-    return ("met" if abs(off - wanted) <= margin else "unmet"), f"{off:.4f} mm before or behind it"
+    return abs(off - wanted) <= one.margin(TOLERANCE_MM), f"{off:.4f} mm before or behind it"
 
 
-def _position(one: Expectation, seen: Observation, part: _MotionPath, marks: Marks) -> Evaluated:
+@_evaluates("pose", "axes")
+def _position(one: Expectation, part: _MotionPath) -> Evaluated:
     moment = part.end
     if one.when is not None:
         try:
-            moment = time_of(one.when.first, seen, marks)
+            moment = time_of(one.when.first, part.seen, part.marks)
         except LookupError as error:
-            return "unmet", str(error.args[0])
+            return False, str(error.args[0])
     wanted = _numbers(one)
-    moments = around(moment, seen.unsure if one.when is not None else 0)
+    moments = around(moment, part.seen.unsure if one.when is not None else 0)
     first, last = np.searchsorted(part.path.times, moments[[0, -1]])
     near = np.arange(max(first - 4, 0), min(last + 4, len(part.path.times)))
     rows = part.path.axes[near] if one.kind == "axes" else part.poses(near, moment)
@@ -281,93 +288,72 @@ def _position(one: Expectation, seen: Observation, part: _MotionPath, marks: Mar
     best = int(off.max(axis=1).argmin())
     actual = " ".join(f"{number:.4f}" for number in found[best])
     usual = TOLERANCE_MM if one.kind == "pose" else TOLERANCE_DEGREES
-    margin = usual if one.tolerance is None else one.tolerance
-    return ("met" if float(off[best].max()) <= margin else "unmet"), actual
+    return float(off[best].max()) <= one.margin(usual), actual
 
 
 # ------------------------------------------------------------------------------------- speeds
 
 
-def _speed(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
-    kept = part.within(part.start, part.end if part.join is None else part.join)
+@_evaluates("speed")
+def _speed(one: Expectation, part: _MotionPath) -> Evaluated:
     if part.is_whole:
         return _speed_of_run(one, part)
-    if one.arguments[0] == "drops":
+    kept, (way, *_, number) = part.whole, one.arguments
+    if way == "drops":
         if part.leave is None or part.join is None:
-            return "unmet", "there is no blend"
+            return _NO_BLEND
         kept = part.within(part.leave, part.join)
     rates = change_rates(part.path.times[kept], part.points[kept])
     speeds = np.linalg.norm(rates, axis=1) / 1_000
     if not len(speeds):
-        return "unmet", "there are too few samples"
-    wanted = float(one.arguments[-1])
-    fastest, slowest = float(speeds.max()), float(speeds.min())
-    match one.arguments[0]:
-        case "most":
-            return ("met" if fastest <= wanted * (1 + _SPEED) else "unmet"), f"{fastest:.4f} m/s"
-        case "reaches":
-            is_met = abs(fastest - wanted) <= wanted * _SPEED
-            return ("met" if is_met else "unmet"), f"{fastest:.4f} m/s"
-    return ("met" if slowest < wanted else "unmet"), f"{slowest:.4f} m/s"
+        return False, "there are too few samples"
+    wanted, fastest, slowest = float(number), float(speeds.max()), float(speeds.min())
+    if way == "drops":
+        return slowest < wanted, f"{slowest:.4f} m/s"
+    off = fastest - wanted
+    return (off if way == "most" else abs(off)) <= wanted * _SPEED, f"{fastest:.4f} m/s"
 
 
 def _speed_of_run(one: Expectation, part: _MotionPath) -> Evaluated:
     """Check the highest speed of the tool in $WORLD during the whole run."""
     wanted, fastest, when = float(one.arguments[-1]), 0.0, 0
+    if one.arguments[0] == "drops":
+        return None, "it is about the blend of a line"
     for rows in part.stretches():
         times = part.path.times[rows]
         if len(times) > 1:
             speeds = np.linalg.norm(change_rates(times, part.path.tips[rows]), axis=1) / 1_000
             if speeds.max() > fastest:
                 fastest, when = float(speeds.max()), int(times[int(np.argmax(speeds))])
-    is_met = fastest <= wanted * (1 + _SPEED)
-    if one.arguments[0] == "reaches":
-        is_met = is_met and fastest >= wanted * (1 - _SPEED)
-    elif one.arguments[0] == "drops":
-        return "open", "it is about the blend of a line"
-    return ("met" if is_met else "unmet"), f"{fastest:.4f} m/s at {when / 1e6:.6f} s"
+    off = fastest - wanted
+    is_met = (off if one.arguments[0] == "most" else abs(off)) <= wanted * _SPEED
+    return is_met, f"{fastest:.4f} m/s at {when / 1e6:.6f} s"
 
 
-def _limits(one: Expectation, seen: Observation, part: _MotionPath) -> Evaluated:
+@_evaluates("smooth", "limits")
+def _limits(one: Expectation, part: _MotionPath) -> Evaluated:
     """Check that no axis exceeds its speed limit, or with ``smooth`` its acceleration limit."""
-    if seen.machine is None:
-        return "open", "the limits of the arm are not known"
-    last = part.end if part.join is None else part.join
-    kept = part.within(part.start, last)
-    axes = seen.machine.axes
-    dynamics = [axis.dynamics for axis in axes[:6]]
-    rates = change_rates(part.path.times[kept], part.path.axes[kept][:, :6])
-    most = np.array([one.velocity if one else math.inf for one in dynamics])
+    if part.seen.machine is None:
+        return None, "the limits of the arm are not known"
+    axes, times = part.seen.machine.axes[:6], part.path.times[part.whole]
+    rates, what = change_rates(times, part.path.axes[part.whole][:, :6]), "velocity"
     if one.kind == "smooth":
-        rates = change_rates(part.path.times[kept][1:], rates)
-        most = np.array([one.acceleration if one else math.inf for one in dynamics])
+        rates, what = change_rates(times[1:], rates), "acceleration"
     if not len(rates):
-        return "unmet", "there are too few samples"
-    worst = np.abs(rates).max(axis=0) / most
+        return False, "there are too few samples"
+    most = [getattr(each.dynamics, what) if each.dynamics else math.inf for each in axes]
+    worst = np.abs(rates).max(axis=0) / np.array(most)
     axis = int(np.argmax(worst))
     actual = f"{axes[axis].name} at {worst[axis] * 100:.1f} % of its limit"
-    return ("met" if float(worst.max()) <= _RATE_MARGIN else "unmet"), actual
+    return float(worst.max()) <= _RATE_MARGIN, actual
 
 
-def _tracks(one: Expectation, _seen: Observation, part: _MotionPath) -> Evaluated:
+@_evaluates("tracks")
+def _tracks(one: Expectation, part: _MotionPath) -> Evaluated:
     """Check that the measured tool is near its set-points."""
     measured = part.path.points_measured
     if measured is None:
-        return "open", "nothing was measured"
+        return None, "nothing was measured"
     kept = part.within(part.start, part.end)
     off = np.linalg.norm(measured[kept, :3] - part.points[kept], axis=1)
     return _within_tolerance(one, float(off.max()), usual=_TRACKING)
-
-
-_EVALUATORS: Final[Mapping[str, Callable[[Expectation, Observation, _MotionPath], Evaluated]]] = {
-    "path": _path,
-    "passes": _passes,
-    "misses": _misses,
-    "avoids": _avoids,
-    "leaves": _leaves,
-    "joins": _leaves,
-    "speed": _speed,
-    "smooth": _limits,
-    "limits": _limits,
-    "tracks": _tracks,
-}

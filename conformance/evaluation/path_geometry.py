@@ -34,13 +34,23 @@ def from_line(points: Array, start: Array, end: Array) -> Array:
     return np.asarray(np.linalg.norm(points - (start + share[:, None] * along), axis=1))
 
 
-def nearest(starts: Array, ends: Array, point: Array) -> Array:
-    """Return the distance of a point from each of n line segments, with ends of shape (n, 3)."""
+def feet(
+    starts: Array, ends: Array, point: Array, least: npt.ArrayLike = 0.0
+) -> tuple[Array, Array]:
+    """Return at which share of n line segments they are nearest to a point, and how far away.
+
+    Ends have shape (n, columns). Shares lie between ``least`` and 1.
+    """
     along = ends - starts
     squares = np.einsum("ij,ij->i", along, along)
     shares = np.einsum("ij,ij->i", point - starts, along) / np.where(squares > 0.0, squares, 1.0)
-    feet = starts + np.clip(shares, 0.0, 1.0)[:, None] * along
-    return np.asarray(np.linalg.norm(feet - point, axis=1))
+    shares = np.clip(shares, least, 1.0)
+    return shares, np.asarray(np.linalg.norm(starts + shares[:, None] * along - point, axis=1))
+
+
+def nearest(starts: Array, ends: Array, point: Array) -> Array:
+    """Return the distance of a point from each of n line segments, with ends of shape (n, 3)."""
+    return feet(starts, ends, point)[1]
 
 
 def crosses_box(starts: Array, ends: Array, low: Array, high: Array) -> npt.NDArray[np.bool_]:
@@ -169,6 +179,18 @@ def refined(
 def change_rates(times: npt.NDArray[np.int64], rows: Array) -> Array:
     """Return the difference quotients of rows per second, shape (n - 1, columns)."""
     return np.asarray(np.diff(rows, axis=0) / (np.diff(times)[:, None] / 1e6))
+
+
+def rates_of(times: npt.NDArray[np.int64], rows: Array) -> list[Array]:
+    """Return the speeds, accelerations and jerks between n rows: n - 1, n - 2 and n - 3."""
+    speeds = change_rates(times, rows)
+    gains = change_rates(times[1:], speeds)
+    return [speeds, gains, change_rates(times[2:], gains)]
+
+
+def lengths(points: Array) -> Array:
+    """Return the length in mm along n points up to each of them."""
+    return np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
 
 
 def drawn(kind: str, points: Array, count: int = 33) -> Array:

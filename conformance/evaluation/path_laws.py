@@ -1,145 +1,163 @@
-"""Laws that every path of set-points obeys: limits of the axes, and the shape of each motion."""
+"""Laws of the path of set-points: limits of the axes, and the shape of each motion."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from conformance.evaluation.observation import Event, Observation
+from conformance.evaluation.laws import Deviations, Laws, Run, Subjects, paths
+from conformance.evaluation.motions import stages
+from conformance.evaluation.observation import Event
 from conformance.evaluation.path_geometry import (
     RATE_MARGIN,
-    change_rates,
     from_circle,
     from_line,
     from_synchronous,
+    rates_of,
 )
-from conformance.evaluation.run_laws import Violation
 from interp.robot.kinematics.placement import IpoMode
-from interp.robot.simulation.tracking import PathRecord
 
 Array = npt.NDArray[np.float64]
 
-#: The smallest number of rows of a path that is checked.
+LAWS: Final = Laws()
+#: The smallest number of rows of a path, and of a motion, that is checked.
 _FEWEST: Final = 4
 #: mm of the tool and degrees of an axis by which rounding may put a set-point off its path.
 _NEAR_MM, _NEAR_DEGREES = 0.002, 0.0005
 _LIMITS: Final = "set-points keep the limits of the axes"
 
 
-def path_violations(seen: Observation) -> Iterator[Violation]:
-    """Yield violations of axis limits, at most one of each kind, and motions of a wrong shape.
-
-    Yield nothing if there is no path, and no limits if the machine data is unknown.
-    """
-    path = seen.path
-    if path is not None and len(path.times) >= _FEWEST:
-        yield from _limit_violations(seen, path)
-        yield from _drift_violations(seen, path)
-        yield from _shape_violations(seen, path)
+def _paths(run: Run) -> Subjects[Run]:
+    return (row for row in paths(run) if len(run.path.times) >= _FEWEST)
 
 
-def _limit_violations(seen: Observation, path: PathRecord) -> Iterator[Violation]:
-    """Check software limits [MOT-15], speeds [MOT-06], accelerations [MOT-02] and jerks."""
-    if seen.machine is None:
-        return
-    axes = seen.machine.every_axis[: path.axes.shape[1]]
-    limits = [one.dynamics for one in axes]
-    rows = path.axes
-    for order, (rule, what) in enumerate(
-        (("MOT-06", "velocity"), ("MOT-02", "acceleration"), ("", "jerk"))
-    ):
-        rows = change_rates(path.times[order:], rows)
-        most = [getattr(one, what) if one else math.inf for one in limits]
-        share = np.abs(rows) / np.array(most)
-        row, axis = np.unravel_index(int(np.argmax(share)), share.shape)
-        if not share[row, axis] <= RATE_MARGIN:
-            actual = f"{axes[axis].name} has {share[row, axis] * 100:.1f} % of its {what}"
-            yield _violation(seen, int(path.times[row]), _LIMITS, actual, rule)
-    for column, one in enumerate(axes):
-        places = path.axes[:, column]
+def _at(run: Run, time: int, actual: str) -> tuple[Event | None, str]:
+    """Return a deviation at the motion that runs at a time in µs."""
+    begun = [one for one in run.seen.of_kind("motion_start") if (one.time or 0) <= time]
+    return begun[-1] if begun else None, f"{actual} at {time / 1e6:.3f} s"
+
+
+def _beyond(order: int, what: str, run: Run) -> Deviations:
+    path = run.path
+    axes = run.machine.every_axis[: path.axes.shape[1]]
+    most = [getattr(one.dynamics, what) if one.dynamics else math.inf for one in axes]
+    share = np.abs(rates_of(path.times, path.axes)[order]) / np.array(most)
+    row, axis = np.unravel_index(int(np.argmax(share)), share.shape)
+    if not share[row, axis] <= RATE_MARGIN:
+        actual = f"{axes[axis].name} has {share[row, axis] * 100:.1f} % of its {what}"
+        yield _at(run, int(path.times[row]), actual)
+
+
+for _order, (_what, _rule) in enumerate(
+    (("velocity", "MOT-06"), ("acceleration", "MOT-02"), ("jerk", ""))
+):
+    LAWS.law(_LIMITS, _rule, of=_paths)(partial(_beyond, _order, _what))
+
+
+@LAWS.law(_LIMITS, "MOT-15", of=_paths)
+def _outside(run: Run) -> Deviations:
+    path = run.path
+    for one, places in zip(run.machine.every_axis, path.axes.T, strict=False):
         outside = ~((places >= one.lower - _NEAR_DEGREES) & (places <= one.upper + _NEAR_DEGREES))
         if outside.any():
             first = int(np.argmax(outside))
             actual = f"{one.name} stands at {places[first]:.3f}"
-            yield _violation(seen, int(path.times[first]), _LIMITS, actual, "MOT-15")
-            return
+            yield _at(run, int(path.times[first]), actual)
 
 
-def _violation(seen: Observation, time: int, law: str, actual: str, rule: str) -> Violation:
-    """Return a violation at the motion that runs at a time in µs."""
-    begun = [one for one in seen.of_kind("motion_start") if (one.time or 0) <= time]
-    return Violation(begun[-1] if begun else None, law, f"{actual} at {time / 1e6:.3f} s", rule)
-
-
-def _drift_violations(seen: Observation, path: PathRecord) -> Iterator[Violation]:
-    """Yield the first movement of the arm between motions, up to a BRAKE or RESUME."""
+@LAWS.law("the arm stands where no motion is under way", of=_paths)
+def _drift(run: Run) -> Deviations:
+    """Up to a BRAKE or RESUME."""
+    path = run.path
     since: int | None = 0
-    for one in seen.of_kind("motion_start", "motion_end", "brake", "resume", "end"):
+    for one in run.seen.of_kind("motion_start", "motion_end", "brake", "resume", "end"):
         if one.kind == "motion_end":
             since = one.time
         elif since is not None and one.time is not None:
             rows = path.axes[(path.times >= since) & (path.times <= one.time)]
             most = float(np.ptp(rows, axis=0).max()) if len(rows) else 0.0
             if not most <= _NEAR_DEGREES:
-                law = "the arm stands where no motion is under way"
-                yield Violation(one, law, f"an axis moves by {most:.4f} before it")
-                return
+                yield one, f"an axis moves by {most:.4f} before it"
             since = None
         if one.kind in ("brake", "resume"):
             return
 
 
-def _shape_violations(seen: Observation, path: PathRecord) -> Iterator[Violation]:
-    """Yield motions that are no line, no circle, or not synchronous [MOT-01] between their blends.
+# ------------------------------------------------------------------------------------- shapes
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """The samples of a motion between its blends: its start in µs, kind, points (n, 3) and axes."""
+
+    start: int
+    kind: str
+    points: Array
+    axes: Array
+
+
+def _parts(run: Run) -> Subjects[_Part]:
+    """Yield the parts of ended motions in no blend during which nothing changes their shape.
 
     With a fixed tool, the base relative to the tool has the shape [ORI-07]; it is not checked.
     """
-    if any(placement.mode is not IpoMode.BASE for _, placement in path.placements):
+    path = run.seen.path
+    if path is None or any(placement.mode is not IpoMode.BASE for _, placement in path.placements):
         return
     # A change of frames, or a motion of an interrupt routine in between, changes the shape.
     changes = [time for time, _ in path.placements]
-    changes += [one.time for one in seen.of_kind("motion_start") if one.time is not None]
-    for start, first, last in _unblended_parts(seen):
-        kept = (path.times >= first) & (path.times <= last)
-        if kept.sum() < _FEWEST or any(first < time < last for time in changes):
+    changes += [one.time for one in run.seen.of_kind("motion_start") if one.time is not None]
+    for its in stages(run.seen).values():
+        if "motion_start" not in its or "motion_end" not in its:
             continue
-        points, axes = path.points[kept][:, :3], path.axes[kept]
-        match str(start.fields.get("motion_kind")).removesuffix("_REL"):
-            case "LIN" | "SLIN":
-                off = float(from_line(points, points[0], points[-1]).max())
-                law, most, rule = "the path of a LIN is a line", _NEAR_MM, ""
-            case "CIRC" | "SCIRC":
-                off = _off_circle(points)
-                law, most, rule = "the path of a CIRC is a circle", _NEAR_MM, ""
-            case "PTP" | "SPTP":
-                off = from_synchronous(axes) or 0.0
-                law, most, rule = "the axes of a PTP are synchronous", _NEAR_DEGREES, "MOT-01.b"
-            case _:
-                continue
-        if not off <= most:
-            yield _violation(seen, start.time or 0, law, f"{off:.4f} off", rule)
+        start = its["motion_start"]
+        first = its.get("blend_end", start).time
+        last = its.get("blend_start", its["motion_end"]).time
+        if first is None or last is None or any(first < time < last for time in changes):
+            continue
+        kept = (path.times >= first) & (path.times <= last)
+        if kept.sum() >= _FEWEST:
+            kind = str(start.fields.get("motion_kind")).removesuffix("_REL")
+            part = _Part(start.time or 0, kind, path.points[kept][:, :3], path.axes[kept])
+            yield start, part
 
 
-def _unblended_parts(seen: Observation) -> Iterator[tuple[Event, int, int]]:
-    """Yield each ended motion with the times in µs between which it was in no blend."""
-    found: dict[tuple[str, object], Event] = {}
-    for one in seen.of_kind("motion_start", "motion_end", "blend_start", "blend_end"):
-        found.setdefault((one.kind, one.fields.get("motion")), one)
-    for (kind, number), start in found.items():
-        if kind == "motion_start" and ("motion_end", number) in found:
-            entered = found.get(("blend_end", number), start)
-            left = found.get(("blend_start", number), found["motion_end", number])
-            if entered.time is not None and left.time is not None:
-                yield start, entered.time, left.time
+def _misshapen(
+    kinds: tuple[str, str], off_of: Callable[[_Part], float], most: float, part: _Part
+) -> Deviations:
+    off = off_of(part) if part.kind in kinds else 0.0
+    if not off <= most:
+        yield f"{off:.4f} off at {part.start / 1e6:.3f} s"
 
 
-def _off_circle(points: Array) -> float:
-    """Return the deviation of points from a circle through three of them; 0 if collinear."""
+def _off_line(part: _Part) -> float:
+    return float(from_line(part.points, part.points[0], part.points[-1]).max())
+
+
+def _off_circle(part: _Part) -> float:
+    """Return the deviation from a circle through three of its points; 0 if they are collinear."""
+    points = part.points
     try:
-        return float(from_circle(points, points[0], points[len(points) // 2], points[-1]).max())
+        return float(from_circle(points, *points[[0, len(points) // 2, -1]]).max())
     except ValueError:
         return 0.0
+
+
+for _states, _rule, _kinds, _off, _most in (
+    ("the path of a LIN is a line", "", ("LIN", "SLIN"), _off_line, _NEAR_MM),
+    ("the path of a CIRC is a circle", "", ("CIRC", "SCIRC"), _off_circle, _NEAR_MM),
+    (
+        "the axes of a PTP are synchronous",
+        "MOT-01.b",
+        ("PTP", "SPTP"),
+        lambda part: from_synchronous(part.axes) or 0.0,
+        _NEAR_DEGREES,
+    ),
+):
+    LAWS.law(_states, _rule, of=_parts)(partial(_misshapen, _kinds, _off, _most))

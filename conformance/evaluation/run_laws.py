@@ -1,89 +1,78 @@
-"""Laws that every run obeys, whatever its program: the order of events in a trace.
-
-A law needs no expectation. So a case also notices errors that are unrelated to what it states. A
-law that no rule of KRL states is stated in docs/trace.md.
-"""
+"""Laws of the order of events in a trace."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Final
 
-from conformance.evaluation.observation import Event, Observation
+from conformance.evaluation.laws import Deviations, Laws, Run, whole
+from conformance.evaluation.observation import Event
 
+LAWS: Final = Laws()
 #: $ADVANCE is at most 5, not counting the running motion [ADV-01].
 _MOST_AHEAD: Final = 5
 
 
-@dataclass(frozen=True, slots=True)
-class Violation:
-    """An event that violates a law: the law, what was observed, and the rule of KRL if any.
-
-    ``event`` is ``None`` if the violation is before all events.
-    """
-
-    event: Event | None
-    law: str
-    actual: str
-    rule: str = ""
-
-
-def run_violations(seen: Observation) -> Iterator[Violation]:
-    """Yield the first violation of each law, in a run whose events are all known."""
-    for law in (_in_time, _changes, _levels, _motions, _ahead, _faults, _ends):
-        found = next(law(seen.events), None)
-        if found is not None:
-            yield found
-    is_told = any(one.kind == "end" and one.task == "robot" for one in seen.events)
-    if seen.ending == "end" and not is_told:
-        yield Violation(None, "the end of the program is an event", "none")
-
-
-def _in_time(events: Sequence[Event]) -> Iterator[Violation]:
+@LAWS.law("events stand in the order of their times", of=whole)
+def _in_time(run: Run) -> Deviations:
     now = 0
-    for one in events:
+    for one in run.seen.events:
         if one.time is not None and one.time < now:
-            yield Violation(one, "events stand in the order of their times", f"{one.time} us")
+            yield one, f"{one.time} us"
         now = one.time or now
 
 
-def _changes(events: Sequence[Event]) -> Iterator[Violation]:
-    """Inputs and outputs are reported when they change, and only then."""
+@LAWS.law("signals are reported where they change", of=whole)
+def _changes(run: Run) -> Deviations:
     values: dict[tuple[object, object], object] = {}
-    for one in events:
-        if one.kind in ("in", "out", "anout"):
-            key = one.fields.get("signal"), one.fields.get("number")
-            value = one.fields.get("value")
-            if key in values and values[key] == value:
-                text = f"{key[0]}[{key[1]}] is {value} already"
-                yield Violation(one, "signals are reported where they change", text)
-            values[key] = value
+    for one in run.seen.of_kind("in", "out", "anout"):
+        key = one.fields.get("signal"), one.fields.get("number")
+        value = one.fields.get("value")
+        if key in values and values[key] == value:
+            yield one, f"{key[0]}[{key[1]}] is {value} already"
+        values[key] = value
 
 
-def _levels(events: Sequence[Event]) -> Iterator[Violation]:
-    """Interrupt routines nest, each with a higher priority than what it interrupts."""
+def _levels(run: Run) -> Iterator[tuple[Event, object, list[object]]]:
+    """Yield entries and exits of interrupts and ends, each with its priority and those under way.
+
+    An exit takes the last priority away.
+    """
     levels: dict[str, list[object]] = {}
-    for one in events:
-        priority = one.fields.get("priority")
-        under_way = levels.setdefault(one.task, [])
+    for one in run.seen.of_kind("interrupt_enter", "interrupt_leave", "end"):
+        priority, under_way = one.fields.get("priority"), levels.setdefault(one.task, [])
+        yield one, priority, under_way
         if one.kind == "interrupt_enter":
-            if under_way and not _is_higher(priority, under_way[-1]):
-                law, actual = "an interrupt interrupts lower ones", f"{priority}: {under_way}"
-                yield Violation(one, law, actual, "INT-05")
             under_way.append(priority)
-        elif one.kind == "interrupt_leave":
-            if not under_way or under_way.pop() != priority:
-                yield Violation(one, "what was entered last is left first", str(priority))
-        elif one.kind == "end" and under_way:
-            yield Violation(one, "no interrupt is under way at the end", str(under_way))
+        elif one.kind == "interrupt_leave" and under_way:
+            under_way.pop()
 
 
-def _is_higher(priority: object, other: object) -> bool:
-    return not isinstance(priority, int) or not isinstance(other, int) or priority < other
+@LAWS.law("an interrupt interrupts lower ones", "INT-05", of=whole)
+def _lower(run: Run) -> Deviations:
+    for one, priority, under_way in _levels(run):
+        if one.kind == "interrupt_enter" and under_way:
+            numbers = [each for each in (priority, under_way[-1]) if isinstance(each, int)]
+            if len(numbers) == 2 and numbers[0] >= numbers[1]:
+                yield one, f"{priority}: {under_way}"
 
 
-def _motions(events: Sequence[Event]) -> Iterator[Violation]:
+@LAWS.law("what was entered last is left first", of=whole)
+def _left(run: Run) -> Deviations:
+    for one, priority, under_way in _levels(run):
+        if one.kind == "interrupt_leave" and under_way[-1:] != [priority]:
+            yield one, str(priority)
+
+
+@LAWS.law("no interrupt is under way at the end", of=whole)
+def _none_left(run: Run) -> Deviations:
+    for one, _, under_way in _levels(run):
+        if one.kind == "end" and under_way:
+            yield one, str(under_way)
+
+
+@LAWS.law("motions follow one another", of=whole)
+def _motions(run: Run) -> Deviations:
     """Motions begin in the order of planning, one after the other.
 
     This is checked up to a BRAKE or RESUME. After that the arm may leave the path, and other
@@ -92,7 +81,7 @@ def _motions(events: Sequence[Event]) -> Iterator[Violation]:
     planned = started = 0
     is_moving = False
     blending: object = None
-    for one in events:
+    for one in run.seen.events:
         number = one.fields.get("motion")
         fits = True
         match one.kind:
@@ -113,40 +102,47 @@ def _motions(events: Sequence[Event]) -> Iterator[Violation]:
             case "brake" | "resume":
                 return
         if not fits:
-            yield Violation(one, "motions follow one another", f"{one.kind} {number}")
+            yield one, f"{one.kind} {number}"
 
 
-def _ahead(events: Sequence[Event]) -> Iterator[Violation]:
-    """The advance run is at most `_MOST_AHEAD` motions ahead of the robot."""
-    planned = started = 0
-    for one in events:
+@LAWS.law(f"at most {_MOST_AHEAD} motions are planned ahead", "ADV-01", of=whole)
+def _ahead(run: Run) -> Deviations:
+    started = 0
+    for one in run.seen.of_kind("motion_planned", "motion_start"):
         number = one.fields.get("motion")
-        if one.kind == "motion_planned" and isinstance(number, int):
-            planned = number
-            if planned - max(started, 1) > _MOST_AHEAD:
-                law, actual = f"at most {_MOST_AHEAD} motions are planned ahead", str(number)
-                yield Violation(one, law, actual, "ADV-01")
-        elif one.kind == "motion_start" and isinstance(number, int):
-            started = number
+        if isinstance(number, int):
+            if one.kind == "motion_start":
+                started = number
+            elif number - max(started, 1) > _MOST_AHEAD:
+                yield one, str(number)
 
 
-def _faults(events: Sequence[Event]) -> Iterator[Violation]:
+@LAWS.law("the message of a fault is shown", of=whole)
+def _faults(run: Run) -> Deviations:
     """The message of a fault with a number appears before it, at the same place and time."""
     shown: set[tuple[object, ...]] = set()
-    for one in events:
+    for one in run.seen.of_kind("message", "fault"):
         number = one.fields.get("number")
         key = one.task, one.file, one.line, one.time, number
         if one.kind == "message":
             shown.add(key)
-        elif one.kind == "fault" and number is not None and key not in shown:
-            yield Violation(one, "the message of a fault is shown", str(number))
+        elif number is not None and key not in shown:
+            yield one, str(number)
 
 
-def _ends(events: Sequence[Event]) -> Iterator[Violation]:
+@LAWS.law("a program that is over does nothing more", of=whole)
+def _ends(run: Run) -> Deviations:
     """A program ends or fails once, and begins no statement after that."""
     over: set[str] = set()
-    for one in events:
-        if one.kind in ("line", "end", "fault") and one.task in over:
-            yield Violation(one, "a program that is over does nothing more", one.kind)
-        if one.kind in ("end", "fault"):
+    for one in run.seen.of_kind("line", "end", "fault"):
+        if one.task in over:
+            yield one, one.kind
+        if one.kind != "line":
             over.add(one.task)
+
+
+@LAWS.law("the end of the program is an event", of=whole)
+def _is_told(run: Run) -> Deviations:
+    is_told = any(one.task == "robot" for one in run.seen.of_kind("end"))
+    if run.seen.ending == "end" and not is_told:
+        yield None, "none"

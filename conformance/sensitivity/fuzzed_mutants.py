@@ -6,16 +6,15 @@ from the tree interpreter.
 
 from __future__ import annotations
 
-import signal
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final, NoReturn
+from typing import Any, Final
 
 from conformance.differential.campaign import world_seed
 from conformance.differential.divergence import prepared
 from conformance.differential.runs import EXECUTORS, trace_of
 from conformance.differential.traces import Fact
+from conformance.evaluation.time_limit import TimeOver, time_limited
 from conformance.sensitivity.code_exchange import InvalidMutant, load
 from conformance.sensitivity.mutants import Mutant, drawn
 from grammar.generation.programs import seeded
@@ -24,8 +23,9 @@ from support.parallel.ordered_map import ordered_map
 
 #: What mutants are drawn from, in `conformance.sensitivity.mutated_code.PACKAGES`.
 MACHINE: Final = "machine"
-#: So many seconds of computing a program may take with a mutant; usually it takes a hundredth.
-_SECONDS: Final = 1.0
+#: So many seconds of computing, and of waiting, a program may take with a mutant; usually it takes
+#: a hundredth of the first.
+_COMPUTING, _LASTING = 1.0, 120.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +64,12 @@ class ReferenceRuns:
         return Verdict(mutant, None, runs)
 
     def _trace(self, number: int, program: Prepared, executor: str) -> list[Fact]:
-        with _limited():
-            return trace_of(program, EXECUTORS[executor], world_seed(self.seed, number))
+        """Return the facts of a run, or none if it never ends."""
+        try:
+            with time_limited(_COMPUTING, _LASTING):
+                return trace_of(program, EXECUTORS[executor], world_seed(self.seed, number))
+        except TimeOver:
+            return []
 
     def _grow(self) -> bool:
         """Make as many programs again; those on which the machine itself is wrong are left out."""
@@ -78,22 +82,6 @@ class ReferenceRuns:
                 self._programs.append((number, program, expected))
         self._next = numbers.stop
         return len(self._programs) > before
-
-
-@contextmanager
-def _limited() -> Iterator[None]:
-    """End what computes without end; the trace of a run shows that."""
-
-    def ended(_number: int, _frame: object) -> NoReturn:
-        raise TimeoutError("this never ends")
-
-    before = signal.signal(signal.SIGVTALRM, ended)
-    signal.setitimer(signal.ITIMER_VIRTUAL, _SECONDS, _SECONDS)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
-        signal.signal(signal.SIGVTALRM, before)
 
 
 def examine_mutants(

@@ -166,6 +166,10 @@ class Expectation:
         """The simplest robot with which it can be evaluated."""
         return "kinematic" if self.near else KINDS[self.kind].robot
 
+    def margin(self, usual: float) -> float:
+        """Return its tolerance, or the usual one."""
+        return usual if self.tolerance is None else self.tolerance
+
     @property
     def is_absence(self) -> bool:
         """Whether it says that something does not happen, so that silence meets it."""

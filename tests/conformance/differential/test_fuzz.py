@@ -210,7 +210,7 @@ def test_a_program_that_the_check_refuses_ends_no_campaign(monkeypatch: pytest.M
 
     monkeypatch.setattr(campaign, "seeded", made)
     found = fuzz(3, 1, ["tree", "vm"])
-    assert (1, 3, ()) == (found.ends["LinkError"], found.ends.total(), found.findings)
+    assert (1, 3, []) == (found.ends["LinkError"], found.ends.total(), found.findings)
 
 
 def test_time_that_is_up_ends_a_campaign(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,10 +7,9 @@ from typing import Final
 
 import pytest
 
-from conformance.evaluation.block_laws import block_violations
+from conformance.evaluation import blend_laws, block_laws
 from conformance.evaluation.execution import Setup, observe
-from conformance.evaluation.motion_laws import slow_blends
-from conformance.evaluation.motions import ended
+from conformance.evaluation.laws import Run
 from conformance.evaluation.observation import Observation
 from conformance.suite.case import Case
 from grammar.syntax.source import Source
@@ -77,8 +76,9 @@ def broken(program: str, change: Callable[[Motion], Motion]) -> list[str]:
     assert "end" == run.ending
     assert run.path is not None
     motions = tuple((time, change(motion)) for time, motion in run.path.motions)
-    known = tuple(ended(replace(run, path=replace(run.path, motions=motions))))
-    return [one.law for one in (*block_violations(known), *slow_blends(known))]
+    judged = Run(replace(run, path=replace(run.path, motions=motions)))
+    laws = block_laws.LAWS, blend_laws.QUICK_LAWS
+    return [one.law for each in laws for one in each.broken(judged)]
 
 
 @pytest.mark.parametrize("program", [_BLOCKS, _CORNERS])

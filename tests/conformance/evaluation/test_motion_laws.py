@@ -9,19 +9,19 @@ from typing import Final
 import numpy as np
 import pytest
 
+from conformance.evaluation import (
+    blend_laws,
+    duration_laws,
+    motion_laws,
+    spline_laws,
+    trigger_laws,
+)
 from conformance.evaluation.case_run import run_case
-from conformance.evaluation.duration_laws import duration_violations, seconds_of
+from conformance.evaluation.duration_laws import seconds_of
 from conformance.evaluation.execution import Setup, observe
-from conformance.evaluation.motion_laws import blend_speed_violations, motion_violations
+from conformance.evaluation.laws import Laws, Run, Violation
 from conformance.evaluation.motions import ended, flanges_of
 from conformance.evaluation.observation import Event, Observation
-from conformance.evaluation.place_laws import (
-    blend_violations,
-    missing_blends,
-    trigger_violations,
-    wrong_blend_reports,
-)
-from conformance.evaluation.spline_laws import spline_violations
 from conformance.suite.case import Case, read_case
 from grammar.syntax.source import Source
 from interp.robot.arm import Approximation, Place, SplinePart
@@ -125,20 +125,23 @@ def settings_of(line: int, program: str = _PROGRAM, **changed: object) -> Observ
     return with_motion(line, program, settings=replace(settings, **changed))  # type: ignore[arg-type]
 
 
-def broken(run: Observation) -> list[tuple[str, int]]:
+_LAWS: Final = (
+    motion_laws.LAWS,
+    blend_laws.LAWS,
+    spline_laws.LAWS,
+    duration_laws.LAWS,
+    trigger_laws.LAWS,
+)
+
+
+def violations(run: Observation, *laws: Laws) -> list[Violation]:
+    """How a run breaks some laws, or any."""
+    return [one for each in laws or _LAWS for one in each.broken(Run(run))]
+
+
+def broken(run: Observation, *laws: Laws) -> list[tuple[str, int]]:
     """Rules and lines of what is broken."""
-    motions = tuple(ended(run))
-    found = (
-        *motion_violations(run, motions),
-        *blend_violations(motions),
-        *missing_blends(motions),
-        *wrong_blend_reports(run, motions),
-        *blend_speed_violations(motions),
-        *spline_violations(motions),
-        *duration_violations(motions),
-        *trigger_violations(run, motions),
-    )
-    return [(one.rule, one.event.line if one.event else 0) for one in found]
+    return [(one.rule, one.event.line if one.event else 0) for one in violations(run, *laws)]
 
 
 @pytest.mark.parametrize("program", [_PROGRAM, _SHORT, _SLOW])
@@ -181,8 +184,7 @@ def test_a_motion_ends_at_its_target(line: int, target: dict[str, float], rule: 
 def test_the_arm_is_at_rest_at_exact_stops() -> None:
     """Set-points that come two cycles late still move there."""
     late = with_path(lambda path: replace(path, axes=path.axes[[0, 0, *range(len(path.axes) - 2)]]))
-    laws = [one.law for one in motion_violations(late, tuple(ended(late)))]
-    assert any("at rest" in law for law in laws)
+    assert any("at rest" in one.law for one in violations(late, motion_laws.LAWS))
 
 
 def test_a_turn_counts_where_the_axis_has_another() -> None:
@@ -243,9 +245,11 @@ def test_a_ptp_between_known_axes_takes_its_time_to_the_microsecond(
         else one
         for one in run.events
     )
-    motions = tuple(ended(replace(run, events=events)))[:2]
-    found = [one.event.line for one in duration_violations(motions) if one.event]
-    assert [7] * (not is_right) == found
+    motions = list(ended(replace(run, events=events)))[:2]
+    judged = Run(run)
+    vars(judged)["free"] = motions
+    lines = [one.event.line for one in duration_laws.LAWS.broken(judged) if one.event]
+    assert [7] * (not is_right) == lines
 
 
 def test_a_motion_from_rest_begins_at_once() -> None:
@@ -253,8 +257,8 @@ def test_a_motion_from_rest_begins_at_once() -> None:
     path = seen().path
     assert path is not None
     late = replace(path, motions=tuple((time + 1, motion) for time, motion in path.motions))
-    found = [one.law for one in duration_violations(tuple(ended(replace(seen(), path=late))))]
-    assert any("begins as soon as" in law for law in found)
+    found = violations(replace(seen(), path=late), duration_laws.LAWS)
+    assert any("begins as soon as" in one.law for one in found)
 
 
 @pytest.mark.parametrize(
@@ -267,8 +271,9 @@ def test_a_blend_that_is_planned_in_time_takes_place(
     settings = next(m.settings for _, m in seen().path.motions if m.at.line == line)  # type: ignore[union-attr]
     near = replace(settings, approximation=Approximation(cdis=size))
     run = with_motion(line, criteria=("C_DIS",), settings=near)
-    assert is_missing == any(missing_blends(tuple(ended(run))))
-    assert is_missing == any(wrong_blend_reports(run, tuple(ended(run))))
+    found = [one.law for one in violations(run, blend_laws.LAWS)]
+    assert is_missing == any("is approximated where" in law for law in found)
+    assert is_missing == any("is reported not" in law for law in found)
 
 
 @pytest.mark.parametrize(
@@ -279,7 +284,7 @@ def test_only_a_blend_is_reported_to_fail(line: int, number: int, is_wrong: bool
     """A motion without criterion ends exactly as it should."""
     told = Event(0, "robot", "message", "a.src", line, {"number": number})
     run = replace(seen(), events=(*seen().events, told))
-    assert is_wrong == any(wrong_blend_reports(run, tuple(ended(run))))
+    assert is_wrong == (("ADV-12", line) in broken(run, blend_laws.LAWS))
 
 
 @pytest.mark.parametrize(
@@ -379,19 +384,13 @@ def test_what_a_brake_holds_and_what_comes_behind_it_is_judged(line: int) -> Non
     run = seen(_HELD)
     assert run.path is not None
     assert [9] == [one.event.line for one in ended(run) if one.is_held]
-    free = tuple(one for one in ended(run) if not one.is_held)
-    assert [] == [
-        *motion_violations(run, tuple(ended(run))),
-        *blend_violations(free),
-        *duration_violations(free),
-    ]
+    assert [] == broken(run)
     motions = [
         (time, replace(motion, target={"Y": 101.0}) if motion.at.line == line else motion)
         for time, motion in run.path.motions
     ]
     changed = replace(run, path=replace(run.path, motions=tuple(motions)))
-    found = motion_violations(changed, tuple(ended(changed)))
-    assert [("MOT-20", line)] == [(one.rule, one.event.line) for one in found if one.event]
+    assert [("MOT-20", line)] == broken(changed, motion_laws.LAWS)
 
 
 def test_seconds_of_a_length() -> None:
@@ -446,8 +445,7 @@ def test_a_spline_block_has_its_shape(share: float, line: int, axis: int, size: 
             axes = run.path.axes.copy()
             axes[:, axis] += size * np.exp(-(((run.path.times - middle) / width) ** 2))
             bumped = replace(run, path=replace(run.path, axes=axes))
-    found = [one.event.line for one in spline_violations(tuple(ended(bumped))) if one.event]
-    assert [line] * (size > 0.0) == found
+    assert [("", line)] * (size > 0.0) == broken(bumped, spline_laws.LAWS)
 
 
 @pytest.mark.parametrize(("line", "law"), [(10, "no axis is faster"), (13, "tool is no faster")])
@@ -470,12 +468,9 @@ def test_a_blend_is_no_faster_than_what_is_beside_it(line: int, law: str) -> Non
         for time, motion in path.motions
     )
     run = with_path(lambda path: replace(path, motions=slow))
-    right = blend_speed_violations(tuple(ended(seen())))
-    wrong = {
-        one.event.line: one.law for one in blend_speed_violations(tuple(ended(run))) if one.event
-    }
-    assert [] == list(right)
-    assert law in wrong[line]
+    found = violations(run, blend_laws.LAWS)
+    assert [] == violations(seen(), blend_laws.LAWS)
+    assert any(law in one.law for one in found if one.event and one.event.line == line)
 
 
 _THERE_AND_BACK: Final = """;@ rule: MOT-06

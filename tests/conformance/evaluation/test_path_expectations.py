@@ -39,7 +39,8 @@ def seen(points: Any, *events: Event, axes: Any = None, measured: Any = None) ->
 
 
 def state(text: str, observed: Observation) -> str:
-    return evaluate_on_path(read_expectation(text, "a.src", 3), observed, NO_MARKS)[0]
+    is_met, _ = evaluate_on_path(read_expectation(text, "a.src", 3), observed, NO_MARKS)
+    return "open" if is_met is None else "met" if is_met else "unmet"
 
 
 LINE = [(float(x), 0.0, 0.0) for x in np.linspace(0, 100, 51)]

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from conformance.evaluation.evaluator import evaluate
+from conformance.evaluation.laws import Run, Violation
 from conformance.evaluation.observation import Event, Observation
-from conformance.evaluation.path_laws import path_violations
+from conformance.evaluation.path_laws import LAWS
 from conformance.suite.case import Case
 from grammar.syntax.source import Source
 from interp.robot.models import default_machine
@@ -32,6 +33,10 @@ def seen(kind: str, points: Any = None, axes: Any = None) -> Observation:
         for name, time in ends
     ]
     return Observation(events=tuple(events), path=path, machine=default_machine())
+
+
+def path_violations(run: Observation) -> list[Violation]:
+    return list(LAWS.broken(Run(run)))
 
 
 def turned(turn: Any) -> list[str]:

@@ -4,8 +4,9 @@ from typing import Any
 
 import pytest
 
+from conformance.evaluation.laws import Run
 from conformance.evaluation.observation import Event, Observation
-from conformance.evaluation.run_laws import run_violations
+from conformance.evaluation.run_laws import LAWS
 
 
 def event(kind: str, time: int = 0, **fields: Any) -> Event:
@@ -60,12 +61,12 @@ PLANNED = [motion("planned", number) for number in range(1, 8)]
 )
 def test_a_law_is_broken_by_what_breaks_it(events: list[Event], laws: list[str]) -> None:
     """The violations of a trace are those of the laws that it breaks."""
-    found = [one.law for one in run_violations(Observation(events=tuple(events)))]
+    found = [one.law for one in LAWS.broken(Run(Observation(events=tuple(events))))]
     assert laws == found
 
 
 def test_a_program_that_has_ended_says_so() -> None:
     """A run that was over by the end of its program has the event."""
     for events, laws in (((event("end"),), []), ((), ["the end of the program is an event"])):
-        found = [one.law for one in run_violations(Observation(events=events, ending="end"))]
+        found = [one.law for one in LAWS.broken(Run(Observation(events=events, ending="end")))]
         assert laws == found

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -51,18 +51,20 @@ def test_a_right_machine_is_not_found(reference: ReferenceRuns) -> None:
     assert [None, 3] == [one["program"] for one in record["verdicts"]]
 
 
-def test_what_never_ends_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A computation is broken off after its time, again if it goes on, and then no longer."""
-    monkeypatch.setattr(fuzzed_mutants, "_SECONDS", 0.02)
-    ended = 0
-    with fuzzed_mutants._limited():
-        while ended < 2:
-            try:
-                while True:
-                    pass
-            except TimeoutError:
-                ended += 1
-    assert (0.0, 0.0) == signal.getitimer(signal.ITIMER_VIRTUAL)
+def test_what_never_ends_is_found(
+    reference: ReferenceRuns, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run that takes more than its time has no facts, unlike that of the reference."""
+    unseen = _mutant("_jump", "target >= site.place")
+    reference.examine(unseen)
+    monkeypatch.setattr(fuzzed_mutants, "_COMPUTING", 0.02)
+    monkeypatch.setattr(fuzzed_mutants, "trace_of", _endless)
+    assert reference.examine(unseen).found_by is not None
+
+
+def _endless(*_given: object) -> NoReturn:
+    while True:
+        pass
 
 
 def test_the_command_draws_the_same_mutants_in_any_number_of_processes(tmp_path: Path) -> None:
