@@ -1,1 +1,1 @@
-"""Code that every package needs and that does not depend on KRL: files, processes, measurement."""
+"""What every package needs: files, processes, measurements. Of KRL only which files have it."""

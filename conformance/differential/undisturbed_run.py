@@ -1,7 +1,7 @@
 """An undisturbed run of an executor as a sequence of requests and events.
 
 Executors that run the same program in the same world make the same requests and report the same
-events, in the same order [design section 6].
+events, in the same order.
 """
 
 from __future__ import annotations

@@ -24,7 +24,7 @@ from conformance.metamorphic.tree_rewriting import (
 from grammar.syntax import ast
 from grammar.syntax.walk import walk
 
-_STRINGS: Final = re.compile(r'"[^"\n]*"|;[^\n]*|&[^\n]*')
+_TEXTS_AND_COMMENTS: Final = re.compile(r'"[^"\n]*"|;[^\n]*|&[^\n]*')
 
 
 #: Statements about the line that follows them in the text [ADV-08, FCT-12].
@@ -70,7 +70,7 @@ def _other_case(program: Program, random: Random) -> Program | None:
     for source in program.case.sources:
         pieces: list[str] = []
         end = 0
-        for found in _STRINGS.finditer(source.text):
+        for found in _TEXTS_AND_COMMENTS.finditer(source.text):
             pieces += [mixed(source.text[end : found.start()]), found.group()]
             end = found.end()
         texts[source.path] = "".join([*pieces, mixed(source.text[end:])])

@@ -45,7 +45,7 @@ def candidates(
 
 
 def _chosen(fault: SeededFault, cases: Sequence[Reach], most: int) -> Iterator[Reach]:
-    """Return at most ``most`` of the cases."""
+    """Yield at most ``most`` of the cases."""
     chosen: dict[str, Reach] = {}
     for way in (_of_rarest(fault, cases), _of_rules(fault, cases), _of_ways(fault, cases)):
         new = (one for one in way if one.case.name not in chosen)

@@ -84,7 +84,7 @@ class Mutant:
 
 
 def all_mutants(packages: Iterable[str] = OF_CASES) -> Iterator[str]:
-    """Return the names of all mutants of some of `PACKAGES`, one package after another."""
+    """Yield the names of all mutants of some of `PACKAGES`, one package after another."""
     for module in (name for package in packages for name in modules_of(package)):
         for number, function in enumerate(_changed(module)):
             if not is_left_out(f"{module}.{function}"):

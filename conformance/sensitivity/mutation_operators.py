@@ -139,7 +139,7 @@ class _Scope:
 
 
 def changes(tree: ast.Module) -> Iterator[Change]:
-    """Return all changes of a module, in the order of its source."""
+    """Yield all changes of a module, in the order of its source."""
     scope = _Scope(reals=_reals(tree))
     for statement in tree.body:
         match statement:

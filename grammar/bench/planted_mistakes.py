@@ -225,7 +225,7 @@ def measure_planted(
 def _left(
     whole: Mapping[str, _Program], missing: str, chance: random.Random
 ) -> Iterator[dict[str, _Program]]:
-    """Return the project without the missing files."""
+    """Yield the project without the missing files."""
     match missing:
         case "others":
             yield from ({path: program} for path, program in whole.items())

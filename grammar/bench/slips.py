@@ -214,7 +214,7 @@ def cut(text: str, chance: random.Random) -> str:
 
 
 def lines_of_tokens(source: Source) -> Iterator[list[Token]]:
-    """Return the tokens of each line that has some."""
+    """Yield the tokens of each line that has some."""
     lexer: Lexer = builder().failures.recognizer.lexer
     line: list[Token] = []
     for lexeme, start in zip(*lexer.located(source.text), strict=True):

@@ -212,13 +212,19 @@ class _Recovery:
             yield _ONCE[word].format((*_NAME.findall(written), "")[1])
 
     def _read_otherwise(self, line: int) -> bool:
-        """Replace a line by its next possible replacement; restore it if there is none left."""
+        """Replace a line by its next possible replacement, and return whether there was one.
+
+        It is restored if there is none left.
+        """
         if self._exchanged.pop(line, None) is not None:
             self._dropped.discard(line)
         return any(text and self._write(line, text) for text in self._readings[line])
 
     def _open(self, line: int, block: OpenBlock | None) -> bool:
-        """Replace a line outside all routines by the first line of the routine that ends below."""
+        """Replace a line outside all routines by the first line of the routine that ends below.
+
+        Returns whether that was possible.
+        """
         if block is not None or line in self._dropped:
             return False
         words = _NAME.findall(self._written.line(line))
@@ -231,7 +237,10 @@ class _Recovery:
         return self._write(line, head.format(names[0])) or self._write(line, head.format("A"))
 
     def _mend(self, cause: OpenBlock | None, line: int, *, is_at_end: bool) -> bool:
-        """Remove a line; or close a block before it; or remove the line that opens the block."""
+        """Remove a line; or close a block before it; or remove the line that opens the block.
+
+        Returns whether one of these was possible.
+        """
         if cause is None:
             return self._write(line, "")
         if is_at_end:
@@ -245,7 +254,7 @@ class _Recovery:
         return self._write(cause.line, "")
 
     def _close_all(self, block: OpenBlock | None) -> bool:
-        """Close the blocks that are open at the end of the text.
+        """Close the blocks that are open at the end of the text; return whether that was possible.
 
         A text that was cut off may end within a line or a name.
         """

@@ -19,7 +19,7 @@ _BEYOND: Final = (
 
 
 def order_of_evaluation(code: RoutineWriter) -> bool:
-    """A sum, an index or arguments whose parts change what the others read."""
+    """Write a sum, an index or arguments whose parts change what the others read."""
     place, text = target(code, INT), array(code, TEXT)
     if place is None or not text:
         return False
@@ -51,7 +51,7 @@ def order_of_evaluation(code: RoutineWriter) -> bool:
 
 
 def count_beyond_range(code: RoutineWriter) -> bool:
-    """FOR to the greatest or least INT, left after a few passes."""
+    """Write a FOR to the greatest or least INT, left after a few passes."""
     spare = code.spare()
     if not code.risk or len(spare) < 2 or code.left() < 24:
         return False
@@ -71,7 +71,7 @@ def count_beyond_range(code: RoutineWriter) -> bool:
 
 
 def own_text(code: RoutineWriter) -> bool:
-    """A text that is read and written by the same statement."""
+    """Write a statement that reads and writes the same text."""
     text, state, offset = array(code, TEXT), target(code, STATE), target(code, INT)
     if not text or state is None or offset is None:
         return False

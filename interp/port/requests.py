@@ -335,7 +335,7 @@ class End(BaseRequest):
 
 @dataclass(frozen=True, slots=True)
 class Fail(BaseRequest):
-    """The program cannot continue because of a fault that it did not catch [design section 8]."""
+    """The program cannot continue because of a fault that it did not catch."""
 
     fault: Exception
 

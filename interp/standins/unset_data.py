@@ -83,7 +83,7 @@ def unset_data(project: Project, sources: Mapping[str, Source]) -> tuple[Unset, 
 
 
 def _without_value(module: Module) -> Iterator[ast.Name]:
-    """Return the variables of a data list that have no initial value."""
+    """Yield the variables of a data list that have no initial value."""
     if module.syntax is None or not isinstance(module.syntax.content, ast.DataList):
         return
     items = module.syntax.content.items

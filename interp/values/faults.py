@@ -1,4 +1,4 @@
-"""The catalogue of the faults of a running program [design section 8].
+"""The catalogue of the faults of a running program.
 
 Only `fault` creates faults, from their slugs. The text of a fault contains no values and no names,
 so that every executor, including the one in C, stops a program with an equal fault.

@@ -1,7 +1,7 @@
 """The search for an edit that repairs most lines of a group and accepts least.
 
 Candidate edits for some of the lines are first tried on a sample, then the best of them on all
-lines without a cause. `recovery.clustering.order` sorts what comes of it.
+lines without a cause. `recovery.clustering.proposal_order` sorts what comes of it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from recovery.clustering.edit_merging import merged_as_choice
 from recovery.clustering.edit_trial import EditTrial, TrialResult
 from recovery.clustering.file_trial import FileTrial
 from recovery.clustering.negative_score import NegativeCounter
-from recovery.clustering.order import ProposalOrder
+from recovery.clustering.proposal_order import ProposalOrder
 from recovery.clustering.regression import ParsedFiles, no_parsed_files
 from recovery.clustering.worth import Sought
 from recovery.forms.symbols import Token

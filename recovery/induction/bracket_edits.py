@@ -28,7 +28,7 @@ class BracketEdits:
         self._operands = operands
 
     def edits(self) -> Iterator[InferredStep]:
-        """Return edits of the contents of brackets, from all contents that a rule does not read."""
+        """Yield edits of the contents of brackets, from all contents that a rule does not read."""
         found: dict[tuple[str, str], dict[tuple[Symbol, ...], list[int]]] = defaultdict(
             lambda: defaultdict(list)
         )

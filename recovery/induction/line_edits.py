@@ -62,7 +62,7 @@ class LineEdits:
             yield InferredStep(f"blank lines in {rule}", (edit,), members)
 
     def _line_rules(self) -> Iterator[InferredStep]:
-        """Return edits that allow a kind of line where another one is expected."""
+        """Yield edits that allow a kind of line where another one is expected."""
         found: dict[tuple[str, str], list[int]] = defaultdict(list)
         written_out = self.hosts.written_out
         kinds_of = sorted(self.at.profile.choices_of_lines | written_out)
@@ -107,7 +107,7 @@ class LineEdits:
     def _families(
         self, groups: dict[tuple[tuple[str, ...], str], list[int]]
     ) -> Iterator[tuple[tuple[tuple[str, ...], str], list[int]]]:
-        """Return the groups, joined if they have equal heads and signs and may be the same rules.
+        """Yield the groups, joined if they have equal heads and signs and may be the same rules.
 
         Lines with a sign at different places have different forms.
         """
@@ -194,7 +194,7 @@ class LineEdits:
     def _grown(
         self, head: str, shapes: dict[tuple[Symbol, ...], list[int]], members: Sequence[int]
     ) -> Iterator[InferredStep]:
-        """Return edits of an alternative with the same first words, to read these lines, too."""
+        """Yield edits of an alternative with the same first words, to read these lines, too."""
         alike = []
         for rule, place, first in self.hosts.all_lines:
             yield from self._one_word_apart(rule, place, first, members)

@@ -38,7 +38,7 @@ class OperandEdits:
         self.operators: set[str] = {f"'{sign}'" for sign in PREFIXES}
 
     def edits(self) -> Iterator[InferredStep]:
-        """Return all edits of operands; contents of brackets are examined after the others."""
+        """Yield all edits of operands; contents of brackets are examined after the others."""
         yield from self._between_operands()
         yield from self._words_as_names()
         yield from self._words_as_types()
@@ -97,7 +97,7 @@ class OperandEdits:
                 prefix[text].append(number)
 
     def _as_infix(self, text: str) -> Iterator[tuple[tuple[Edit, ...], int]]:
-        """Return the edits for each level of operators, and its index in the ladder.
+        """Yield the edits for each level of operators, and its index in the ladder.
 
         The first sign or word makes a level. A further sign may bind tighter than all others and
         than what stands ahead of operands.
@@ -177,7 +177,7 @@ class OperandEdits:
                 yield InferredStep(title, edits, every)
 
     def _words_as_types(self) -> Iterator[InferredStep]:
-        """Return reserved words in front of a name, if a rule has a choice of words and names."""
+        """Yield reserved words in front of a name, if a rule has a choice of words and names."""
         found: dict[tuple[str, str], list[int]] = defaultdict(list)
         lexer, choices = self.at.lexer, self.at.rules.type_rules
         for number, tokens, index in self.at.failures:
@@ -193,7 +193,7 @@ class OperandEdits:
             yield InferredStep(f"{word} as {rule}", edits, tuple(members), is_strict=True)
 
     def _name_places(self, number: int) -> Iterator[tuple[str, Address]]:
-        """Return the indices of names outside operands at which a line fails."""
+        """Yield the indices of names outside operands at which a line fails."""
         recognizer, rules = self.at.recognizer, self.at.rules
         names = {rules.names, self.at.lexer.name}
         others = {*names, *rules.recursive}
@@ -205,7 +205,7 @@ class OperandEdits:
                     yield rule.name, place
 
     def _brackets_as_operands(self) -> Iterator[InferredStep]:
-        """Return the contents of brackets that stand alone where an operand is possible."""
+        """Yield the contents of brackets that stand alone where an operand is possible."""
         found: dict[str, list[int]] = defaultdict(list)
         name = self.at.lexer.name_kind
         for number, tokens, index in self.at.failures:
@@ -228,7 +228,7 @@ class OperandEdits:
                     )
 
     def _brackets_behind_names(self) -> Iterator[InferredStep]:
-        """Return brackets, as those of an index or a call, behind operands that are a name.
+        """Yield brackets, as those of an index or a call, behind operands that are a name.
 
         Between them are operands, as many as lines have.
         """

@@ -35,7 +35,7 @@ class SupportedForms:
         old: Sequence[tuple[Symbol, ...]] = (),
         least: int = 1,
     ) -> Iterator[str]:
-        """Return forms of ``old`` shapes and these: of all, of recurring ones, of recurring words.
+        """Yield forms of ``old`` shapes and these: of all, of recurring ones, of recurring words.
 
         One odd line must not spoil a form, nor one origin: pairs of neighbours must occur in
         ``least`` origins, if that is more than all forms need and as many origins have the shapes.

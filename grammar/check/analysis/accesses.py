@@ -94,7 +94,7 @@ def _later(
 
 
 def own_parts(node: ast.Node) -> Sequence[ast.Node]:
-    """Yield the children of a node without nested statements, but with the values of CASE."""
+    """Return the children of a node without nested statements, but with the values of CASE."""
     below = children(node)
     inner = BODIES.get(type(node))
     if inner is None:
@@ -110,7 +110,7 @@ def own_parts(node: ast.Node) -> Sequence[ast.Node]:
 
 
 def parts_of(node: ast.Node) -> Sequence[ast.Node]:
-    """Yield a statement and its descendants, without the statements of a block."""
+    """Return a statement and its descendants, without the statements of a block."""
     found: list[ast.Node] = [node]
     for here in found:  # grows while it is walked
         if type(here) not in LEAVES:

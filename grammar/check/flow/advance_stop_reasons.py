@@ -142,7 +142,7 @@ def _is_system(context: Context, name: ast.Name) -> bool:
 def _variable(
     context: Context, variable: ast.Variable, *, is_write: bool
 ) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Return a description of a variable whose access stops, and the rules that say so."""
+    """Yield what to call a variable whose access stops, with the rules that say so."""
     name = variable.name
     found = context.found(name)
     if found is not None and found.symbol.kind is Kind.IMPORT:

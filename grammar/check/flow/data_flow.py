@@ -78,7 +78,7 @@ class DataFlow:
         return found
 
     def early(self, followed: frozenset[str], *, is_passed_open: bool = False) -> Iterator[Access]:
-        """Return the first read of each variable that no path with a value reaches.
+        """Yield the first read of each variable that no path with a value reaches.
 
         Passing a variable to a routine counts as assigning it. If ``is_passed_open``, passing it to
         a routine of the project does not, and the first such call is returned, too.

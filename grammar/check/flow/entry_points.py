@@ -129,7 +129,7 @@ def _outside(
 
 
 def _first_motion(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    """Return the first motion of a program that is never called, if it is certain."""
+    """Yield the first motion of a program that is never called, if it is certain."""
     if context.module.suffix != ".src" or routine.node.parameters or routine.node.result:
         return
     key = routine.node.name.key

@@ -55,7 +55,7 @@ def _read_too_early(context: Context, routine: RoutineBody) -> Iterator[Diagnost
 def _possibly_early(
     context: Context, routine: RoutineBody, followed: frozenset[str]
 ) -> Iterator[tuple[Access, int]]:
-    """Return the first read of each variable that some path without a value reaches.
+    """Yield the first read of each variable that some path without a value reaches.
 
     Each comes with the line of an assignment. Loops count as executed at least once. A read is
     left out if a condition may prevent it: one with a name that also decides about the

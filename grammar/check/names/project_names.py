@@ -38,7 +38,7 @@ _Uses = Mapping[Key, Sequence[UnresolvedName]]
 
 
 def of_project(found: Iterable[UnresolvedName], spelling: Spelling) -> Iterator[Diagnostic]:
-    """Return the findings on names that the files of a project use from elsewhere.
+    """Yield the findings on names that the files of a project use from elsewhere.
 
     An undeclared name is an error if all files that could declare it are read; a warning if it is a
     slip of a visible name, or of a name that is used often and comes from elsewhere itself;

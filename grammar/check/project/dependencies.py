@@ -82,7 +82,7 @@ def contribution(
 
 
 def needs_of(project: Project, contributions: Sequence[Contribution | None]) -> Iterator[Needs]:
-    """Return the needs of each file of a project, in order, even of files without contribution."""
+    """Yield the needs of each file of a project, in order, even of files without contribution."""
     facts: dict[str, list[str]] = {}
     paths: dict[str, list[str]] = {}
     for given in filter(None, contributions):

@@ -14,7 +14,7 @@ _BARE = re.compile(r"(?<![^\r\n])([ \t]*)((?:END)?FOLD)(?![^ \t(\r\n])", re.IGNO
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Return the findings on ;FOLD and ;ENDFOLD without partner."""
+    """Yield the findings on ;FOLD and ;ENDFOLD without partner."""
     source = context.source
     found = dict(_unbalanced(source))
     lost = _BARE.finditer(source.text) if found else ()

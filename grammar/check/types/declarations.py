@@ -22,7 +22,7 @@ from grammar.syntax.references import Space
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Return the findings on the declarations of a file."""
+    """Yield the findings on the declarations of a file."""
     checker = type_checker(context)
     _check_name(checker)
     _check_use(checker)

@@ -67,8 +67,8 @@ class PathExecution:
     ) -> bool:
         """Travel a path from a time on, starting in the state of the arm at that time.
 
-        If ``is_strict``, nothing changes and the result is false where a seam would be passed
-        faster than is allowed.
+        Returns whether that was possible. With ``is_strict`` it is not, and nothing changes, where
+        a seam would be passed faster than is allowed.
         """
         route = self.ahead(path, time)
         if not route:
@@ -171,7 +171,7 @@ class PathExecution:
         override: float,
         is_strict: bool,
     ) -> bool:
-        """Schedule a route from a state and append its legs to the timeline."""
+        """Schedule a route from a state, append its legs, and return whether that was possible."""
         entries = _entries(route, state.u)
         found = schedule(_known(entries), state, override, is_strict=is_strict)
         if found is None or (is_strict and found.over):

@@ -304,9 +304,9 @@ class PlannedArm:
         self._now = max(self._now, now)
 
     def _schedule(self, plan: Plan, *, is_strict: bool = False) -> bool:
-        """Schedule a plan from now on, unless the override is 0.
+        """Schedule a plan from now on, unless the override is 0; return whether that was possible.
 
-        If ``is_strict``, do so only if no seam is passed too fast; return whether it was done.
+        With ``is_strict`` it is so only if no seam is passed too fast.
         """
         self._agenda = None
         if self._override == 0.0:

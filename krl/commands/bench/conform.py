@@ -54,7 +54,7 @@ def conform(
     check_files(json_file, survivors)
     with expected_extras(*ARM):
         from conformance.evaluation.execution import Setup, missing
-        from conformance.sensitivity.bench import mutants_record, planted_record, speed_of
+        from conformance.sensitivity.bench_record import mutants_record, planted_record, speed_of
         from conformance.sensitivity.detection import (
             detect_faults,
             is_possible,

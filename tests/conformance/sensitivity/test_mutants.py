@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from conformance.evaluation.execution import Setup, observe
-from conformance.sensitivity import bench, detection
+from conformance.sensitivity import bench_record, detection
 from conformance.sensitivity.case_selection import candidates
 from conformance.sensitivity.detection import (
     Detection,
@@ -415,7 +415,7 @@ def test_shares_are_of_what_could_be_noticed() -> None:
     """Equivalent and invalid mutants count neither as found nor as missed."""
     mutant = named("interp.values.values:0")
     fates: tuple[Fate, ...] = ("red", "red", "soft", "survived", "equivalent", "invalid")
-    record = bench.mutants_record({7: [Detection(mutant, fate) for fate in fates]})
+    record = bench_record.mutants_record({7: [Detection(mutant, fate) for fate in fates]})
     assert (6, 2, 0.5) == (record["mutants"], record["red"], record["share"])
     assert [("values", 0.5)] == [(one["package"], one["share"]) for one in record["packages"]]
     assert [(7, 0.5)] == [

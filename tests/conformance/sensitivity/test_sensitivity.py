@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from conformance.sensitivity import bench, detection
+from conformance.sensitivity import bench_record, detection
 from conformance.sensitivity.detection import Detection, detect_faults, is_possible, reaches_of
 from conformance.sensitivity.planted_faults import FAULTS, Fault
 from conformance.suite.case import CASES, read_case
@@ -118,7 +118,7 @@ def test_a_fault_that_changes_nothing_survives() -> None:
     nothing = Fault("none", "nothing", Statements, "_if", partialmethod)
     (found,) = _detections([nothing], "control/recursion", "control/if_else")
     assert ("survived", 2) == (found.fate, found.runs)
-    record = bench.planted_record([found], "tree")
+    record = bench_record.planted_record([found], "tree")
     assert [{"group": "none", "fault": "nothing", "runs": 2}] == record["survivors"]
     assert 0.0 == record["share"]
 
