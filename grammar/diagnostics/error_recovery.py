@@ -12,8 +12,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from pathlib import PurePath
 
-from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, OUTERMOST
+from grammar.blocks import BLOCKS, BRANCHES, CLOSERS, OUTERMOST, PREFIXES
 from grammar.diagnostics.expected_tokens import is_in_place_of_name
 from grammar.diagnostics.open_blocks import OpenBlock, innermost, lead, open_blocks
 from grammar.diagnostics.typos import Series, Typos
@@ -32,7 +33,10 @@ _HEADS = {"END": "DEF {}()", "ENDFCT": "DEFFCT INT {}()", "ENDDAT": "DEFDAT {}"}
 #: Replacements for the first or last line of a block, with which its body runs once.
 _ONCE = {"CASE": "CASE 0", "IF": "IF TRUE THEN", "FOR": "FOR {}=1 TO 1", "UNTIL": "UNTIL TRUE"}
 _STRUCTURE = frozenset({*BLOCKS, *BRANCHES, *CLOSERS})
-_SLIPS_OF_STRUCTURE = Typos(_STRUCTURE, 3, series=Series.NONE)
+_SLIPS_OF_STRUCTURE = Typos(_STRUCTURE, series=Series.NONE)
+_SLIPS_OF_HEADS = Typos(OUTERMOST, series=Series.NONE)
+#: What a line begins with that no finding is about: a comment, a header of the controller.
+_FREE = (";", "&")
 _NAME = re.compile(r"[$A-Za-z_][\w$]*")
 #: A text, a comment or a word.
 _WORDS = re.compile(r'"[^"\n]*"|;.*|(?<![\w$#.])[A-Za-z_]\w*', re.ASCII)
@@ -100,6 +104,7 @@ class _Recovery:
         self._readings: dict[int, Iterator[str]] = {}
         self._renamed: dict[str, str] = {}
         self._is_cut = False
+        self._heads: list[str] = []  # what is named in first lines that were written here
 
     def run(self) -> Recovered | None:
         """Return the tree and the failures; ``None`` if recovery fails."""
@@ -152,7 +157,8 @@ class _Recovery:
 
     def _recovered(self, syntax: ast.Module) -> Recovered:
         self._failures.sort(key=lambda failure: failure.offset)
-        dropped = "\n".join(self._written.line(number) for number in sorted(self._dropped))
+        lines = (self._written.line(number) for number in sorted(self._dropped))
+        dropped = "\n".join((*lines, *self._heads))
         return Recovered(
             syntax,
             tuple(self._failures),
@@ -221,20 +227,35 @@ class _Recovery:
         return any(text and self._write(line, text) for text in self._readings[line])
 
     def _open(self, line: int, block: OpenBlock | None) -> bool:
-        """Replace a line outside all routines by the first line of the routine that ends below.
+        """Write the first line of the routine or data list that ends below.
 
-        Returns whether that was possible.
+        It takes the place of a line that looks like it, else of a free line before. Returns whether
+        that was possible.
         """
         if block is not None or line in self._dropped:
             return False
-        words = _NAME.findall(self._written.line(line))
         later = (lead(text) for text in self._written.lines[line:])
-        closer = next((word for word in later if word in _HEADS or word in OUTERMOST), "")
-        head = _HEADS.get(closer, "")
-        names = [word for word in words[1:] if word.upper() not in OUTERMOST] or words
-        if not head or not names:
+        head = _HEADS.get(next((word for word in later if word in _HEADS or word in OUTERMOST), ""))
+        if head is None:
             return False
-        return self._write(line, head.format(names[0])) or self._write(line, head.format("A"))
+        before = self._written.lines[: line - 1]
+        stem = PurePath(self._path).stem
+        words = _NAME.findall(self._written.line(line).upper())
+        first, *words = [word for word in words if word not in PREFIXES] or [""]
+        if first in (*OUTERMOST, stem.upper()) or _SLIPS_OF_HEADS.meant(first):
+            places = [line]
+            name = next((word for word in words if word not in OUTERMOST), first)
+        else:
+            last = max((n for n, text in enumerate(before, 1) if text[:1] == "&"), default=1)
+            ends = (n for n, text in enumerate(before, 1) if lead(text) in _HEADS)
+            places = [*self._free_lines(max(ends, default=last - 1) + 1, line), line]
+            name = stem if OUTERMOST.isdisjoint(map(lead, before)) else ""
+        for at in places:
+            for one in filter(_NAME.fullmatch, (name, "A")):
+                if self._write(at, head.format(one)):
+                    self._heads.append(one)
+                    return True
+        return False
 
     def _mend(self, cause: OpenBlock | None, line: int, *, is_at_end: bool) -> bool:
         """Remove a line; or close a block before it; or remove the line that opens the block.
@@ -275,14 +296,14 @@ class _Recovery:
         return True
 
     def _free_lines(self, first: int, end: int) -> Iterator[int]:
-        """Yield lines that can take a closing word: removed, then blank, then comment lines.
+        """Yield lines that can take another text: removed, then blank, then comments and headers.
 
         Of each kind the last one comes first.
         """
         lines = range(end - 1, first - 1, -1)
         yield from (line for line in lines if line in self._dropped)
         yield from (line for line in lines if not self._written.line(line).strip())
-        yield from (line for line in lines if self._written.line(line).lstrip()[:1] == ";")
+        yield from (line for line in lines if self._written.line(line).lstrip()[:1] in _FREE)
 
     def _write(self, line: int, text: str) -> bool:
         """Replace a line by a text that is not longer; return whether that was possible.
@@ -296,7 +317,7 @@ class _Recovery:
         if self._exchanged.get(line) or self._exchanged.get(line) == text:
             return False
         self._exchanged[line] = text
-        if not is_blank and not written.lstrip().startswith(";"):
+        if not is_blank and written.lstrip()[0] not in _FREE:
             self._dropped.add(line)
         start = self._written.starts[line - 1]
         self._text = (

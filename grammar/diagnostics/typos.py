@@ -3,8 +3,8 @@
 This is stricter than `grammar.diagnostics.did_you_mean`, which only words a hint, because a finding
 rests on it. A slip is one letter that is missing, added or replaced, or two neighbours that are
 swapped. Names that belong to a series are not slips of one another: those that differ in a digit,
-in the last letter of a word (``PICKA``, ``PICKB``), in a prefix (``XHOME`` and ``HOME``), or as GET
-and SET. If all names of a series are known, only digits tell its members apart; `Series` says so
+in the last letter of a word (``PICKA``, ``PICKB``), in a prefix (``XP1`` and ``FP1``), or as GET and
+SET. If all names of a series are known, only digits tell its members apart; `Series` says so
 for each name. Small letters before a capital (``gnPart``) are a prefix only if other names have the
 same prefix.
 """
@@ -16,8 +16,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from enum import Enum
 
-# Shorter names are similar to too many others.
-_SHORTEST = 4
+# Shorter names are similar to too many others, and shorter words to other words.
+_SHORTEST = 3
+_SHORTEST_WORD = 4
 _LONGEST = 64
 # Part of a name: a run of letters, or of other characters.
 _WORD = re.compile(r"[A-Z]+|[^A-Z]+", re.IGNORECASE)
@@ -28,8 +29,8 @@ _PAIR = {"GET", "SET"}
 _ALIKE = ({"O", "0"}, {"I", "1"}, {"L", "1"})
 # A final letter can number a word that is shorter than this: POSX, POSY.
 _SHORTEST_TO_END = 6
-# Prefixes with which inline forms name the data of a point: XP1, FP1, PPDAT1, LCPDAT1.
-_PREFIXES = frozenset("XFPL")
+# Prefixes with which inline forms name the data of a point: XP1, FP1.
+_PREFIXES = frozenset("XF")
 # A prefix of small letters that tells the kind of a name: gnPart, a global number.
 _SMALL_PREFIX = re.compile(r"[a-z]+(?=[A-Z])")
 
@@ -137,7 +138,7 @@ def _is_slip(
         if has_plurals and is_plural and name[0] != "$":
             return False  # singular and plural
         if start == 0:
-            return has_slipped or (longer is right and _loses_its_first(name, series))
+            return has_slipped or (longer is right and _loses_its_first(name))
         spelt = misspelt if longer is wrong else name
         return not _numbers(spelt, start, series, _SHORTEST_TO_END)
     if wrong[start + 1 :] == right[start + 1 :]:
@@ -163,23 +164,21 @@ def _is_capitalised(name: str) -> bool:
 def _is_prefix(misspelt: str, name: str, index: int, series: Series) -> bool:
     """Return whether a letter of a name is a prefix that tells its kind: xHome, I_START.
 
-    The first letter of a long word in capitals is none if all names of its series are known.
+    Before a mark a few letters are a prefix: IPO_MODE, APO_MODE.
     """
     if name[0] == "$" and index == 0:
         return misspelt[1:] != name[1:] and misspelt[0].islower() and misspelt[1:2].isupper()
     if index == 0:
-        is_word = _is_capitalised(name) or (
-            series is Series.DIGITS and len(_word(name, 0)) > _SHORTEST_TO_END and name.isupper()
-        )
-        return not is_word or {misspelt[0].upper(), name[0]} <= _PREFIXES
+        is_short = "_" in name[1 : _SHORTEST_WORD if series is Series.LETTERS else 2]
+        is_prefix = {misspelt[0].upper(), name[0].upper()} <= _PREFIXES
+        return is_prefix or is_short or bool(small_prefix(name))
     return name[index - 1] == "_" and name[index + 1 : index + 2] in ("", "_")
 
 
-def _loses_its_first(name: str, series: Series) -> bool:
+def _loses_its_first(name: str) -> bool:
     """Return whether a name is not plausible without its first letter, which is no prefix then."""
-    if series is not Series.DIGITS or name[0].islower() or len(name) <= _SHORTEST_TO_END:
-        return _is_capitalised(name)
-    return name[0] not in _PREFIXES
+    is_prefix = name[0] == "$" or name[0].upper() in _PREFIXES or small_prefix(name)
+    return _is_capitalised(name) or not is_prefix
 
 
 def _numbers(name: str, index: int, series: Series, shortest: int = _LONGEST) -> bool:
@@ -193,7 +192,7 @@ def _numbers(name: str, index: int, series: Series, shortest: int = _LONGEST) ->
     word = _word(name, index)
     if not word.isalpha():
         return True
-    if len(word) >= _SHORTEST and name[index - 1 : index + 1].islower() and not name.islower():
+    if len(word) >= _SHORTEST_WORD and name[index - 1 : index + 1].islower() and not name.islower():
         return False
     if name[index + 1 : index + 2].isalpha():
         return False

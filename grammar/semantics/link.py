@@ -24,6 +24,7 @@ from pathlib import PurePosixPath
 from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.declared_types import DeclaredTypes
 from grammar.semantics.package_scope import PackageScope, called_packages
+from grammar.semantics.packages import load_packages
 from grammar.semantics.predefined import System
 from grammar.semantics.project_grouping import grouped
 from grammar.semantics.project_scope import Globals, PartlyRead, nearest
@@ -356,7 +357,10 @@ def _has_read(module: Module) -> bool:
 
 @cache
 def _system_typos(system: System, space: Space) -> Typos:
-    return Typos(SystemScope(system).names(space), series=Series.DIGITS)
+    packages = load_packages()
+    installed = {Space.ROUTINE: packages.routines, Space.VALUE: packages.variables}
+    names = (*SystemScope(system).names(space), *installed.get(space, ()))
+    return Typos(names, series=Series.DIGITS)
 
 
 def _is_in_system(module: Module) -> bool:

@@ -127,7 +127,7 @@ def _slipped(
     all_ = (one.statement for one in routine.statements)
     wanted = Counter(one.label.key for one in all_ if isinstance(one, ast.Goto))
     alone = (key for key in own if key not in wanted and len(homes[key]) == 1)
-    near = Typos(alone, 3, series=Series.NONE)
+    near = Typos(alone, series=Series.NONE)
     found: dict[str, ast.Name] = {}
     for key in wanted:
         meant = near.meant(key) if key not in own else ()

@@ -42,10 +42,11 @@ class DataFlow:
         unread = context.module.words or frozenset()
         symbols = routine.table.table.spaces[Space.VALUE].values()
         asked = _names_in_texts(context, routine) if symbols else ()
+        is_partial = context.is_cut(routine) or context.module.is_head_unread(routine.node.name.key)
         followed = {
             one.key: one
             for one in symbols
-            if one.key not in unread and one.key not in asked and not context.is_cut(routine)
+            if one.key not in unread and one.key not in asked and not is_partial
         }
         self.parameters = frozenset(
             key for key, one in followed.items() if one.kind is Kind.PARAMETER

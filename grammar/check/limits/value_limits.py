@@ -54,7 +54,7 @@ def _number(context: Context, node: ast.Expression | None) -> float | None:
 
 
 def _interrupt(context: Context, node: ast.InterruptDeclaration) -> Iterator[Diagnostic]:
-    is_own = not _is_stop_message(node.condition)  # 3 is that of every program [INT-02]
+    is_own = not _may_be_stop_message(context, node.condition)
     yield from _interrupt_number(context, node.number, is_own=is_own)
 
 
@@ -90,9 +90,10 @@ def _pulse(context: Context, node: ast.Expression | None) -> Iterator[Diagnostic
         yield context.finding("pulse-duration", node, message)
 
 
-def _is_stop_message(condition: ast.Expression) -> bool:
-    names = (node.name.key for node in walk(condition) if isinstance(node, ast.Variable))
-    return _STOP_MESSAGE in names
+def _may_be_stop_message(context: Context, condition: ast.Expression) -> bool:
+    """Return whether a condition is that of interrupt 3, which every program has [INT-02]."""
+    names = (node.name for node in walk(condition) if isinstance(node, ast.Variable))
+    return any(name.key == _STOP_MESSAGE or context.found(name) is None for name in names)
 
 
 # --------------------------------------------------------------------------------------- triggers

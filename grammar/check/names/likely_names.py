@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator
 from functools import cache, cached_property
 
 from grammar.check.analysis.context import Context
@@ -12,22 +11,18 @@ from grammar.diagnostics.typos import Series, Typos, small_prefix
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Use
 from grammar.semantics.scopes import Found
-from grammar.semantics.types import CHAR, SCALARS, Array
+from grammar.semantics.types import CHAR, SCALARS, Array, Enumeration
 from grammar.syntax import ast
 from grammar.syntax.references import Space
 
 #: What is written in every program, so that one slip away from it there is nothing else.
 _WORDS_OF_KRL = {
     Space.TYPE: Typos((*SCALARS, *"AXIS E6AXIS FRAME POS E6POS".split()), 2, series=Series.NONE),
-    Space.VALUE: Typos(("TRUE", "FALSE"), 3, series=Series.NONE),
+    Space.VALUE: Typos(("TRUE", "FALSE"), series=Series.NONE),
 }
-#: What inline forms call, and with which arguments: the name alone is too short to tell.
-_BAS = Typos(("BAS",), 2, series=Series.NONE)
-_FOR_BAS = re.compile(
-    r"[ \t]*\([ \t]*#(?:INITMOV|[A-Z]+_PARAMS|(?:VEL|ACC)_[A-Z]+|BASE|TOOL)\b", re.IGNORECASE
-)
-# Names with fewer letters are near to anything.
-_SHORT = 3
+#: Routines whose names are too short to tell; each has commands of its own.
+_COMMANDED = {name: Typos((name,), 2, series=Series.NONE) for name in ("BAS", "P00")}
+_COMMAND = re.compile(r"[ \t]*\([ \t]*#(\w+)")
 
 
 class LikelyNames:
@@ -40,21 +35,26 @@ class LikelyNames:
     def of(self, use: Use) -> tuple[str, ...]:
         """Return the visible names of which a name may be a slip; of all, the most certain ones."""
         space, name = use.space, use.name.text
-        if space is None or isinstance(use.answer, Found):
+        if space is None or isinstance(use.answer, Found) or use.name.key in _COMMANDED:
             return ()
         if use.name in self._context.constants:
             return (self._context.constants[use.name],)
         if meant := self._of_the_system(space, name):
             return meant
-        if space is Space.ROUTINE and self._is_bas(use.name):
-            return ("BAS",)
+        if space is Space.ROUTINE and (meant := self._commanded(use.name)):
+            return meant
         if space in _WORDS_OF_KRL and (meant := _WORDS_OF_KRL[space].meant(name)):
             return meant
         return self._declared(space, name)
 
-    def _is_bas(self, name: ast.Name) -> bool:
-        arguments = _FOR_BAS.match(self._context.source.text, name.span[1])
-        return bool(arguments and _BAS.meant(name.text))
+    def _commanded(self, name: ast.Name) -> tuple[str, ...]:
+        """Return the routine that takes the command behind a name, if the name is a slip of it."""
+        command = _COMMAND.match(self._context.source.text, name.span[1])
+        for routine, typos in _COMMANDED.items() if command else ():
+            known = self._context.system.types[f"{routine}_COMMAND"]
+            if isinstance(known, Enumeration) and command[1].upper() in known.constants:
+                return typos.meant(name.text)
+        return ()
 
     def _of_the_system(self, space: Space, name: str) -> tuple[str, ...]:
         """Return the system variables whose names lack the dollar sign or have another slip."""
@@ -76,25 +76,15 @@ class LikelyNames:
         for known in (own, everywhere):
             if meant := known.meant(name, has_slipped=has_slipped, has_plurals=has_plurals):
                 return meant
-        letters = set(name.upper())
-        near = self._short.meant(name, has_plurals=False) if space is Space.VALUE else ()
-        return tuple(one for one in near if set(one.upper()) == letters)
+        return ()
 
     def _own_typos(self, space: Space) -> Typos:
         """Return the names of the file, of its routines and of its data list."""
         if space not in self._own:
-            self._own[space] = Typos(self._names(space), series=Series.DIGITS)
+            tables = (*self._context.tables, *filter(None, [self._context.own_data]))
+            names = (name for table in tables for name in table.names(space))
+            self._own[space] = Typos(names, series=Series.DIGITS)
         return self._own[space]
-
-    def _names(self, space: Space) -> Iterator[str]:
-        tables = (*self._context.tables, *filter(None, [self._context.own_data]))
-        return (name for table in tables for name in table.names(space))
-
-    @cached_property
-    def _short(self) -> Typos:
-        """The variables of three letters, of which only a name of the same letters is a slip."""
-        names = (name for name in self._names(Space.VALUE) if len(name) == _SHORT)
-        return Typos(names, _SHORT, series=Series.DIGITS)
 
     @cached_property
     def _prefixes(self) -> frozenset[str]:
@@ -108,4 +98,4 @@ class LikelyNames:
 def system_typos() -> Typos:
     """Return the system variables as an index for misspellings."""
     names = (name for name in System.load().variables if name.startswith("$"))
-    return Typos(names, 3, series=Series.DIGITS)
+    return Typos(names, series=Series.DIGITS)

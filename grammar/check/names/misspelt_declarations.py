@@ -42,7 +42,7 @@ def slips_in_file(context: Context) -> Mapping[str, Diagnostic]:
     if not uses or context.module.words:  # what cannot be read may use it
         return {}
     idle = unused(context, context.tables)
-    typos = Typos((symbol.name for symbol in idle.values()), 3, series=Series.NONE)
+    typos = Typos((symbol.name for symbol in idle.values()), series=Series.NONE)
     found = {}
     for key, some in uses.items():
         near = typos.meant(key)

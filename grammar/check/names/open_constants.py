@@ -78,7 +78,7 @@ def _system_constants() -> Mapping[str, str]:
 
 @lru_cache(maxsize=256)
 def _typos(names: tuple[str, ...]) -> Typos:
-    return Typos(names, 3, series=Series.DIGITS)
+    return Typos(names, series=Series.DIGITS)
 
 
 # --------------------------------------------------------------------------------- a project

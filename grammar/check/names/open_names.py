@@ -58,7 +58,7 @@ def _open_components() -> Typos:
     types = System.load().types.values()
     known = (one for one in types if isinstance(one, Structure) and one.is_open)
     names = (member.name for one in known for member in one.members)
-    return Typos(names, 3, series=Series.DIGITS)
+    return Typos(names, series=Series.DIGITS)
 
 
 def _lacking_parts(context: Context) -> Iterator[UnresolvedName]:
@@ -68,7 +68,7 @@ def _lacking_parts(context: Context) -> Iterator[UnresolvedName]:
             mark, known = "#", type_.constants
         else:
             mark, known = ".", tuple(one.name for one in type_.members)
-        near = Typos(known, 3, series=Series.DIGITS).meant(name, has_plurals=False)
+        near = Typos(known, series=Series.DIGITS).meant(name, has_plurals=False)
         at = declaration_of(context, Space.TYPE, type_.name) if len(near) == 1 else None
         yield UnresolvedName(
             Space.TYPE,

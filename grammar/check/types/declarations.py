@@ -203,7 +203,7 @@ def _slipped(
     if len(undeclared) > 1:
         return None
     name = undeclared[0].name
-    near = Typos([name.text], 3, series=Series.NONE)
+    near = Typos([name.text], series=Series.NONE)
     used = {
         found.symbol
         for name, found in context.resolution.answers.items()

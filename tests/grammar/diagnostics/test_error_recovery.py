@@ -172,6 +172,22 @@ def test_blocks_with_a_line_that_cannot_be_read(head: str, end: str, read: str) 
     assert [False] == [failure.follows for failure in found.failures]
 
 
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("&ACCESS RVP\n&PARAM EDITMASK = *\nINT N\nN=1\nEND\nDEF B()\nEND\n", ["WORK", "B"]),
+        ("DEF B()\nEND\n; a comment that is long\nGLOBAL INTERRUPT OFF 3\nEND\n", ["B", "A"]),
+        ("DEE WORK(P:IN)\nN=1\nEND\n", ["WORK"]),
+    ],
+)
+def test_a_first_line_that_is_lost_costs_no_other_line(text: str, names: list[str]) -> None:
+    """A free line before takes it; the first routine is called like the file."""
+    found = recover(text, "R1/WORK.src")
+    assert names == routines(found.syntax)
+    assert 1 == len(found.failures)
+    assert names[names == ["B", "A"]] in found.dropped
+
+
 @pytest.mark.parametrize("head", ["IF A = = 3 THEN", "FOR I=1 TOO 3", "CASE ) 1"])
 def test_a_head_that_cannot_be_read_and_opens_nothing(head: str) -> None:
     """A damaged head without its end, as somebody types it, costs no other line."""

@@ -80,13 +80,21 @@ def test_only_digits_number_what_is_wholly_known(wrong: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "right"), [("MNITMOV", "INITMOV"), ("XHOMEPOS", "LHOMEPOS"), ("O_START", "I_START")]
+    ("wrong", "right", "is_slip", "is_slip_if_known"),
+    [
+        ("MNITMOV", "INITMOV", True, True),
+        ("et", "ret", True, True),
+        ("APO_MODE", "IPO_MODE", False, True),
+        ("XHOME", "FHOME", False, False),
+        ("O_START", "I_START", False, False),
+    ],
 )
-def test_the_first_letter_of_a_long_word_may_be_a_slip(wrong: str, right: str) -> None:
-    """It is one where all of a series is known, unless it is a prefix of points or of signals."""
-    assert () == Typos([right]).meant(wrong)
-    expected = (right,) if right == "INITMOV" else ()
-    assert expected == Typos([right], series=Series.DIGITS).meant(wrong)
+def test_the_first_letter_may_be_a_slip(
+    wrong: str, right: str, is_slip: bool, is_slip_if_known: bool
+) -> None:
+    """It is none if it is a prefix of points or signals, or of a word that others may have."""
+    assert is_slip == bool(Typos([right]).meant(wrong))
+    assert is_slip_if_known == bool(Typos([right], series=Series.DIGITS).meant(wrong))
 
 
 def test_a_name_lacks_its_number() -> None:

@@ -38,6 +38,7 @@ def test_pulses(agrees: Agrees, seconds: str, said: str) -> None:
         "INTERRUPT DECL 128 WHEN $IN[1] DO WORK()",
         "INTERRUPT DECL I WHEN $IN[1] DO WORK()",
         "INTERRUPT DECL 3 WHEN $STOPMESS == TRUE DO WORK()",
+        "INTERRUPT DECL 3 WHEN $STOPMES == TRUE DO WORK() ;> KRL113?",
         "INTERRUPT DECL 3 WHEN $IN[1] DO WORK() ;> KRL503?",
         "INTERRUPT DECL 40 WHEN $IN[1] DO WORK() ;> KRL503",
         "INTERRUPT DECL 38 + 2 WHEN $IN[1] DO WORK() ;> KRL503",

@@ -168,6 +168,9 @@ END"""
     [
         ("BASS (#INITMOV, 0)", True),
         ("BSA(#PTP_PARAMS, 100)", True),
+        ("P0(#EXT_PGNO)", True),
+        ("RIS_MOVECORR()", True),
+        ("BAS(#INITMOV, 0)", False),
         ("BASS(#OPEN)", False),
         ("GAS(3)", False),
     ],
@@ -175,7 +178,7 @@ END"""
 def test_what_inline_forms_call_is_known_by_its_arguments(
     finds: Callable[..., list[Diagnostic]], call: str, is_slip: bool
 ) -> None:
-    """BAS is too short a name to be known by its letters."""
+    """BAS is too short a name to be known by its letters; packages are known without a call."""
     found = finds({"a.src": f"DEF A()\n{call}\nEND\n"}, is_complete=None)
     assert is_slip == any(one.code == "KRL102" for one in found)
 
@@ -649,15 +652,18 @@ def test_a_type_that_is_not_at_hand_may_have_a_constant() -> None:
     main = "DEF MAIN()\n  HALT\nEND\n"
     data = "DEFDAT MAIN\nDECL {} X=#GIVE_STOPP\nENUM OWN GIVE_STOP, GIVE_WAY\nENDDAT\n"
     for type_, expected in (
-        ("FAR", []),
+        ("REMOTE", []),
         ("OWN", [("main.dat", 2, "KSS2296")]),
     ):
         assert expected == found_in({"main.src": main, "main.dat": data.format(type_)})
 
 
-@pytest.mark.parametrize(("name", "mark"), [("rte", "101?"), ("rett", "101?"), ("rat", "701-")])
-def test_a_short_variable_is_known_by_its_letters(agrees: Agrees, name: str, mark: str) -> None:
-    """One with other letters may be another variable, whose file is missing."""
+@pytest.mark.parametrize(
+    ("name", "mark"),
+    [("rte", "101?"), ("rett", "101?"), ("rat", "101?"), ("et", "101?"), ("ran", "701-")],
+)
+def test_a_short_variable_may_be_a_slip(agrees: Agrees, name: str, mark: str) -> None:
+    """One with two other letters may be another variable, whose file is missing."""
     cell = f"""DEF CELL()
   INT RET
   RET = 1
