@@ -3,8 +3,8 @@
 This is stricter than `grammar.diagnostics.did_you_mean`, which only words a hint, because a finding
 rests on it. A slip is one letter that is missing, added or replaced, or two neighbours that are
 swapped. Names that belong to a series are not slips of one another: those that differ in a digit,
-in the last letter of a word (``PICKA``, ``PICKB``), in a prefix (``XP1`` and ``FP1``), or as GET and
-SET. If all names of a series are known, only digits tell its members apart; `Series` says so
+in the last letter of a word (``PICKA``, ``PICKB``), in a prefix (``XP1`` and ``FP1``), or as GET
+and SET. If all names of a series are known, only digits tell its members apart; `Series` says so
 for each name. Small letters before a capital (``gnPart``) are a prefix only if other names have the
 same prefix.
 """

@@ -50,9 +50,10 @@ class LikelyNames:
     def _commanded(self, name: ast.Name) -> tuple[str, ...]:
         """Return the routine that takes the command behind a name, if the name is a slip of it."""
         command = _COMMAND.match(self._context.source.text, name.span[1])
-        for routine, typos in _COMMANDED.items() if command else ():
+        written = command[1].upper() if command else ""
+        for routine, typos in _COMMANDED.items():
             known = self._context.system.types[f"{routine}_COMMAND"]
-            if isinstance(known, Enumeration) and command[1].upper() in known.constants:
+            if isinstance(known, Enumeration) and written in known.constants:
                 return typos.meant(name.text)
         return ()
 

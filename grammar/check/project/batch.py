@@ -26,6 +26,7 @@ from grammar.check.project.project_check import (
     check_part,
     completed,
     found_in_project,
+    linked,
     needs,
     read_part,
     recheck,
@@ -227,9 +228,10 @@ class _Project:
         for part in reading:
             looked |= part.result()
         self._read = looked
-        self._needs = needs(self.contents, looked, self.options)
-        stale = {i: self.contents[i] for i, one in known.items() if not one.stands(self._needs[i])}
         paths = [content.path for content in self.contents]
+        projects = linked(paths, looked, self.options) if self.options.kept else ()
+        self._needs = needs(paths, looked, projects)
+        stale = {i: self.contents[i] for i, one in known.items() if not one.stands(self._needs[i])}
         self._parts = [
             pool.submit(process, check_part, number, paths, looked, again, self.options)
             for process, again in enumerate(_shares(stale, pool.count))

@@ -193,7 +193,6 @@ def found_in_project(contents: Sequence[Content], files: Sequence[KnownFile]) ->
 class _Tree:
     """What a process keeps of a file between reading and checking; some have no tree."""
 
-    table: ModuleTable
     source: Source
     comments: tuple[Suppression, ...]
     reading: Reading
@@ -209,31 +208,40 @@ def recheck(
     known: Mapping[int, KnownFile],
 ) -> list[KnownFile]:
     """Check a project in this process, except for ``known`` files that are still valid."""
-    project = -1
+    project, paths = -1, [content.path for content in contents]
     new = {index: one for index, one in enumerate(contents) if index not in known}
     looked = {index: one.read for index, one in known.items()}
     looked |= read_part(project, new, options)
-    needed = needs(contents, looked, options)
+    projects = linked(paths, looked, options)
+    needed = needs(paths, looked, projects if options.kept else ())
     stale = {i: contents[i] for i, one in known.items() if not one.stands(needed[i])}
-    checked = check_part(project, [one.path for one in contents], looked, stale, options)
-    return completed(looked, known, checked, needed)
+    return completed(looked, known, _check(project, projects, looked, stale, options), needed)
+
+
+def linked(
+    paths: Sequence[str], looked: Mapping[int, FileResult], options: CheckOptions
+) -> tuple[Project, ...]:
+    """Return the linked files that are KRL; ``looked`` is what reading them gave."""
+    files = (
+        File(path, None, table=looked[index].table, words=looked[index].words)
+        for index, path in enumerate(paths)
+        if looked[index].skipped is None
+    )
+    is_complete = options.is_complete or None
+    return link(files, is_complete=is_complete, packages=frozenset(options.packages)).projects
 
 
 def needs(
-    contents: Sequence[Content], looked: Mapping[int, FileResult], options: CheckOptions
+    paths: Sequence[str], looked: Mapping[int, FileResult], projects: Iterable[Project]
 ) -> list[Needs]:
-    """Return the needs of each file of a project, from the results of reading all of them."""
-    found = [NO_NEEDS] * len(contents)
-    if not options.kept:
-        return found
-    paths = [content.path for content in contents]
+    """Return the needs of each file, from the results of reading all files of some projects."""
+    found = [NO_NEEDS] * len(paths)
     by_path = {path: index for index, path in enumerate(paths)}
-    for project in _linked(_files(paths, looked, {}), CheckOptions()):
+    for project in projects:
         members = [by_path[module.path] for module in project.modules]
         given = [looked[index].contribution for index in members]
         for index, needed in zip(members, needs_of(project, given), strict=True):
             found[index] = needed
-        project.forget()
     return found
 
 
@@ -305,7 +313,7 @@ def _read(content: Content, options: CheckOptions) -> tuple[FileResult, _Tree | 
     table = table_of(tree)
     given = contribution(path, source.text, table if options.kept else None, reading.words)
     looked = FileResult(Findings(found, ()), None, table, None, comments, reading.words, given)
-    return looked, _Tree(table, source, comments, reading)
+    return looked, _Tree(source, comments, reading)
 
 
 def check_part(
@@ -321,43 +329,30 @@ def check_part(
     elsewhere: files that are no KRL belong to no project. ``again`` are files whose text was known,
     so that none of them was read now.
     """
-    kept = _KEPT.pop(project, {}) | _read_all(again, options)[1]
-    if not kept:
-        return {}
-    files = _files(paths, looked, kept)
+    return _check(project, linked(paths, looked, options), looked, again, options)
+
+
+def _check(
+    number: int,
+    projects: Iterable[Project],
+    looked: Mapping[int, FileResult],
+    again: Mapping[int, Content],
+    options: CheckOptions,
+) -> dict[int, FileResult]:
+    kept = _KEPT.pop(number, {}) | _read_all(again, options)[1]
     # modules are identified by their tables, which are the same objects
-    own = {id(tree.table): (index, tree) for index, tree in kept.items()}
+    own = {id(looked[index].table): (index, tree) for index, tree in kept.items()}
     checked = {}
-    for linked in _linked(files, options):
-        for module in linked.modules:
+    for project in projects:
+        for module in project.modules:
             if id(module.table) in own:
                 index, tree = own[id(module.table)]
                 syntax = tree.reading.syntax or _again(tree.source)
                 whole = replace(module, syntax=syntax)
                 with gc_paused(MANY_OBJECTS):
-                    checked[index] = _checked(linked, whole, tree, options)
-        linked.forget()
+                    checked[index] = _checked(project, whole, tree, options)
+        project.forget()
     return checked
-
-
-def _linked(files: Iterable[File], options: CheckOptions) -> tuple[Project, ...]:
-    is_complete = options.is_complete or None
-    return link(files, is_complete=is_complete, packages=frozenset(options.packages)).projects
-
-
-def _files(
-    paths: Sequence[str],
-    looked: Mapping[int, FileResult],
-    kept: Mapping[int, _Tree],
-) -> list[File]:
-    """Return the files of a project to link: those that are KRL."""
-    files = []
-    for index, path in enumerate(paths):
-        known, tree = looked[index], kept.get(index)
-        if known.skipped is None:
-            table = tree.table if tree else known.table
-            files.append(File(path, None, table=table, words=known.words))
-    return files
 
 
 def _again(source: Source) -> ast.Module:
