@@ -21,10 +21,10 @@ from support.gc_pause import collect_seldom
 FINE: Final = 0
 FINDINGS: Final = 1
 BAD_INPUT: Final = 2
+#: The status that shells report for a program ended by Ctrl-C.
 INTERRUPTED: Final = 130
-"""The status that shells report for a program ended by Ctrl-C."""
+#: The status that shells report for a program whose reader, such as `head`, has gone.
 READER_GONE: Final = 141
-"""The status that shells report for a program whose reader, such as `head`, has gone."""
 
 _LONGEST_LINE = 2_000  # enough for two long paths; words of the input may have any length
 

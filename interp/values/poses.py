@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 Row = tuple[float, float, float, float]
 
+#: Cosine of B below which A and C rotate about the same axis; the orientation errs by no more.
 _LOCKED = 1e-12
-"""Cosine of B below which A and C rotate about the same axis; the orientation errs by no more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,5 +142,5 @@ def _degrees(radians: float) -> float:
     return 180.0 if value == -180.0 else value
 
 
+#: The pose of a frame relative to itself, $NULLFRAME.
 IDENTITY = Pose.of()
-"""The pose of a frame relative to itself, $NULLFRAME."""

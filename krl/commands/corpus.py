@@ -16,8 +16,8 @@ from reports.rendering.number_format import counted
 if TYPE_CHECKING:
     from recovery.corpus.public import PublicSource
 
+#: In the working folder: the corpus is data of a checkout and does not travel with the package.
 CORPUS = Path("corpus")
-"""In the working folder: the corpus is data of a checkout and does not travel with the package."""
 
 _SYNTHETIC = Path("reports", "out", "synth")
 _UNITS = {"": 1, "k": 1_000, "m": 1_000_000, "g": 1_000_000_000}

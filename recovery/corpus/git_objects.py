@@ -10,8 +10,8 @@ import subprocess
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+#: How many folders below OWNER+NAME a mirror's git directory may lie.
 _MIRROR_DEPTH = 3
-"""How many folders below OWNER+NAME a mirror's git directory may lie."""
 
 # If set by a surrounding git command, these would direct git to another repository.
 _REPOSITORY_VARIABLES = (

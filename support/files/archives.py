@@ -28,16 +28,16 @@ from support.files.untrusted import open_file
 from support.lazy_dataclass import dataclass
 
 MB = 1 << 20
+#: One file, packed or not. The longest KRL file known has about 1 MB; point tables may have ten.
 MAX_FILE_BYTES = 64 * MB
-"""One file, packed or not. The longest KRL file known has about 1 MB; point tables may have ten."""
+#: What the members read from one archive may have together, nested archives included.
 MAX_ARCHIVE_BYTES = 2048 * MB
-"""What the members read from one archive may have together, nested archives included."""
+#: Members of one archive, nested ones included. A controller backup has about 5,000.
 MAX_MEMBERS = 100_000
-"""Members of one archive, nested ones included. A controller backup has about 5,000."""
+#: An archive's directory, read in one piece by `zipfile`: room for `MAX_MEMBERS` long names.
 MAX_DIRECTORY_BYTES = 16 * MB
-"""An archive's directory, read in one piece by `zipfile`: room for `MAX_MEMBERS` long names."""
+#: Archives kept open between two calls of `read` in one process.
 OPEN_ARCHIVES = 4
-"""Archives kept open between two calls of `read` in one process."""
 
 # Both are unpacked in bounded steps. The bzip2 and LZMA readers of `zipfile` can expand a few
 # kilobytes to gigabytes in one step; no controller and no common Windows tool uses them.

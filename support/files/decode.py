@@ -15,8 +15,8 @@ from itertools import islice
 
 from support.lazy_dataclass import dataclass
 
+#: Lines looked at for KRL statements when no line opens a module. Openers are sought everywhere.
 EVIDENCE_LINES = 2_000
-"""Lines looked at for KRL statements when no line opens a module. Openers are sought everywhere."""
 
 _LINE_WIDTH = 400  # how many characters of a line are examined; enough to recognise a statement
 

@@ -22,14 +22,14 @@ from support.files.decode import Decoded, decode
 from support.files.untrusted import open_file
 from support.lazy_dataclass import dataclass
 
+#: How names of KRL files end, in any case of letters.
 SUFFIXES = (".src", ".dat", ".sub")
-"""How names of KRL files end, in any case of letters."""
 
+#: Folders, in lower case, that hold no programs of users. Hidden ones, `.git` too, are ignored.
 IGNORED_FOLDERS = {"node_modules", "__pycache__", "__macosx"}
-"""Folders, in lower case, that hold no programs of users. Hidden ones, `.git` too, are ignored."""
 
+#: Folders, in lower case, that lie in R1: one called R1 may be somebody's name for a robot.
 DRIVE_FOLDERS = {"program", "system", "mada", "tp", "folgen"}
-"""Folders, in lower case, that lie in R1: one called R1 may be somebody's name for a robot."""
 
 _BACKUP_SIGNS = {".git", "krc", "r1", "steu"}  # a folder that holds one of these is one origin
 _CORPUS_SIGN = "sources.toml"

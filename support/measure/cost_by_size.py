@@ -12,13 +12,13 @@ from support.measure.peak_memory import peak_memory
 
 _T = TypeVar("_T")
 
+#: The first size costs so much at least: less is lost in the noise of a machine.
 _NOTICEABLE_S: Final = 0.2
-"""The first size costs so much at least: less is lost in the noise of a machine."""
+#: Less memory than this is not counted as growth: allocators take it in steps.
 _NOTICEABLE_BYTES: Final = 16 << 20
-"""Less memory than this is not counted as growth: allocators take it in steps."""
 _REPEATED_ABOVE: Final = 1.1
+#: No greater size is tried after one that took longer.
 _LONGEST_S: Final = 10.0
-"""No greater size is tried after one that took longer."""
 
 
 @dataclass(frozen=True, slots=True)

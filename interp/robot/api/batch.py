@@ -13,8 +13,8 @@ from interp.robot.api.control_core import ControlCore, Switch
 from interp.robot.arm import Arm
 from interp.values.faults import Fault
 
+#: The largest number of motions in a batch: a program may loop over blended motions.
 _MOST_HELD = 256
-"""The largest number of motions in a batch: a program may loop over blended motions."""
 
 
 class BatchCore(ControlCore):

@@ -19,16 +19,16 @@ from interp.robot.kinematics.machine_data import MachineData, MachineDataError
 
 _SHOULDER = np.array([1.0, 1.0, -1.0, -1.0])  # wrist centre in front of axis 1, or behind it
 _ELBOW = np.array([-1.0, 1.0, -1.0, 1.0])  # sign of the bend
+#: Sine of A5 below which axes 4 and 6 are collinear.
 _STRAIGHT = 1e-12
-"""Sine of A5 below which axes 4 and 6 are collinear."""
+#: Sine of A5 below which A4 is free and stays where it is: 1e-7 degrees.
 _UNDETERMINED = 2e-9
-"""Sine of A5 below which A4 is free and stays where it is: 1e-7 degrees."""
+#: mm of reach that may be lost by rounding.
 _MARGIN = 1e-7
-"""mm of reach that may be lost by rounding."""
+#: mm from axis 1 within which a point counts as on it; a REAL resolves 1e-4 mm at 1 m.
 _OVERHEAD = 1e-3
-"""mm from axis 1 within which a point counts as on it; a REAL resolves 1e-4 mm at 1 m."""
+#: mm beyond which a pose counts as unreachable, like one that is NaN.
 _FAR = 1e9
-"""mm beyond which a pose counts as unreachable, like one that is NaN."""
 
 
 class CentralWrist(Kinematics):

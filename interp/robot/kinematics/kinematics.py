@@ -23,8 +23,8 @@ Array = npt.NDArray[np.float64]
 
 #: Degrees between two samples up to which a path counts as continuous.
 LARGEST_STEP = 30.0
+#: Degrees of A5 from which on a wrist with a singularity is clearly bent.
 _BENT = 0.06
-"""Degrees of A5 from which on a wrist with a singularity is clearly bent."""
 _BEHIND = 1e-7  # mm of rounding
 _TURN = 1e-9  # degrees of rounding
 

@@ -28,8 +28,8 @@ ROBOT_AXES = 6
 #: The names of the axes in positions.
 AXIS_NAMES = ("A1", "A2", "A3", "A4", "A5", "A6")
 EXTERNAL_NAMES = ("E1", "E2", "E3", "E4", "E5", "E6")
+#: Seconds to full speed if the data has no run-up time; assumed, similar to that of other arms.
 RUN_UP_TIME = 0.4
-"""Seconds to full speed if the data has no run-up time; assumed, similar to that of other arms."""
 FILTER_TIME = 0.1  # seconds over which acceleration builds up; assumed too
 T1_SPEED, T1_PERCENT = 0.25, 7.0
 _TOLERANCE = 1e-9  # mm, or of a cosine
@@ -123,8 +123,8 @@ class CartesianLimits:
 
 
 DEFAULT_VELOCITY = CartesianLimits(3.0, 400.0, 400.0)
+#: Those of an arm whose data has none.
 DEFAULT_ACCELERATION = CartesianLimits(10.0, 1000.0, 1000.0)
-"""Those of an arm whose data has none."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,8 +32,8 @@ from interp.robot.kinematics.machine_data import (
 from interp.values.poses import IDENTITY, Pose
 
 _MOST_EXTERNAL = 6
+#: The frames of an external kinematic system: one before each of its three axes, one at its end.
 _LINKS = ("TA1KR", "TA2A1", "TA3A2", "TFLA3")
-"""The frames of an external kinematic system: one before each of its three axes, one at its end."""
 _UNKNOWN_JERK = 1e18  # the value in files of an axis without a jerk limit
 
 

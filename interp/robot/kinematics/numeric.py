@@ -25,12 +25,12 @@ from interp.values.faults import Fault
 
 _STARTS = 96
 _ROUNDS = 40
+#: The largest step of a joint after which the next would change nothing but rounding: curves
+#: through the samples of a path need their third differences.
 _SETTLED = 1e-8
-"""The largest step of a joint after which the next would change nothing but rounding: curves
-through the samples of a path need their third differences."""
 _LEAST_DAMPING = 1e-13
+#: Radians by which an arm may miss an orientation, with six joints and with fewer.
 _MET, _OFF = 1e-7, 0.002
-"""Radians by which an arm may miss an orientation, with six joints and with fewer."""
 _BESIDE = 0.01  # the fraction of the size by which it may miss a position then, for a radian
 _COARSE = 32
 

@@ -20,8 +20,8 @@ from interp.robot.kinematics.machine_data import MachineData, MachineDataError, 
 
 _SOLUTIONS = 4
 _TOLERANCE = 1e-9  # mm, or of a cosine
+#: Length of the projection of the flange axis on the arm's plane, below which it is undefined.
 _FLAT = 1e-6
-"""Length of the projection of the flange axis on the arm's plane, below which it is undefined."""
 _ROUNDS = 100  # more than a few are needed only near axis 1
 _BESIDE = 1e-6  # mm by which the tip may be missed
 

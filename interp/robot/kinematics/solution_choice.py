@@ -24,10 +24,10 @@ from interp.values.poses import IDENTITY, Pose
 Axes = tuple[float, ...]
 
 _ALL_BITS = 7
+#: Degrees below zero that still count as zero for Turn: points have about six digits.
 _ZERO = 1e-7
-"""Degrees below zero that still count as zero for Turn: points have about six digits."""
+#: Degrees by which an axis may exceed its software limit switch, because of rounding.
 _LIMIT = 1e-6
-"""Degrees by which an axis may exceed its software limit switch, because of rounding."""
 _WRIST = 0.01812  # degrees of A5, given in [POS-08]
 _ELBOW = 1e-4  # degrees of A3; this and the next, mm from axis 1, are ours: the manual has none
 _OVERHEAD = 1e-6

@@ -30,12 +30,12 @@ if TYPE_CHECKING:
 Rates = tuple[Array, Array, Array]
 
 _COARSE = 8
+#: Degrees of fourth differences below which only every `_COARSE`-th point is kept: for closer
+#: points, rounding would dominate the differences.
 _NOISE = 1e-11
-"""Degrees of fourth differences below which only every `_COARSE`-th point is kept: for closer
-points, rounding would dominate the differences."""
 _COUNTS = tuple((len(GRID) - 1) * 2**doubled + 1 for doubled in range(8))
+#: Largest fourth difference of points in degrees; a cubic spline errs by 5/384 of it at most.
 _SMOOTH = 0.004
-"""Largest fourth difference of points in degrees; a cubic spline errs by 5/384 of it at most."""
 _ROUGH = 0.05  # degrees of fourth difference at which, with most points, an axis jumps
 
 

@@ -11,8 +11,8 @@ from interp.robot.kinematics.kinematics import Array
 from interp.values.faults import Fault
 
 _SAME = 1e-6  # mm below which two points are the same
+#: Square of the sine of the angle at a point below which three points are collinear.
 _STRAIGHT = 1e-12
-"""Square of the sine of the angle at a point below which three points are collinear."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -16,8 +16,8 @@ from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.orientation import Orientation
 from interp.robot.path.transition import Transition
 
+#: The fewest parameters at which a path is sampled: what a blend does changes quickly.
 GRID = np.linspace(0.0, 1.0, 65)
-"""The fewest parameters at which a path is sampled: what a blend does changes quickly."""
 
 
 class PathShape(Protocol):

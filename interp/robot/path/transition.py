@@ -22,10 +22,10 @@ from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.arc_length import ArcLength
 from interp.robot.path.speed_profile import SpeedProfile
 
+#: Largest ratio of the durations of both sides: beyond it, a blend may cost more than it saves.
 _UNEVEN = 2.0
-"""Largest ratio of the durations of both sides: beyond it, a blend may cost more than it saves."""
+#: Offset in u after a break; rounding never moves it to before the break.
 _BEHIND = 1e-9
-"""Offset in u after a break; rounding never moves it to before the break."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,8 +16,8 @@ from interp.robot.kinematics.kinematics import Array
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
+#: The number of points above which the matrix would need too much memory.
 _MAPPED = 129
-"""The number of points above which the matrix would need too much memory."""
 
 
 class UniformSpline:

@@ -12,8 +12,8 @@ from interp.robot.kinematics.kinematics import Array
 from interp.robot.kinematics.machine_data import AxisDynamics, AxisKind, MachineData
 from interp.robot.planning.torque_limits import TorqueLimits
 
+#: The dynamics of an axis without machine data: assumed, similar to those of other arms.
 _ROTARY, _LINEAR = AxisDynamics.ramped(180.0), AxisDynamics.ramped(1000.0)
-"""The dynamics of an axis without machine data: assumed, similar to those of other arms."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,8 +18,8 @@ from interp.robot.planning.ramps import ramp
 from interp.robot.planning.tracks import Piece, Track
 
 _HALF = 0.5
+#: Share of a path below which motions are not blended.
 _SMALLEST = 1e-6
-"""Share of a path below which motions are not blended."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,17 +40,17 @@ from interp.robot.planning.straight_run import StraightPart, StraightRun, extend
 from interp.robot.planning.tracks import METRE, Track, Tracks
 from interp.values.faults import Fault
 
+#: Slopes of roundings; the first is nearly a parabola, which BLD-12 states for lines.
 _PARABOLA, _SMOOTH = 1.0, 2.0
-"""Slopes of roundings; the first is nearly a parabola, which BLD-12 states for lines."""
+#: Share of a duration above which the transition nearer to a parabola is preferred.
 _SOONER = 0.95
-"""Share of a duration above which the transition nearer to a parabola is preferred."""
+#: Share of the duration with an exact stop that such a transition must not exceed.
 _SAVED = 0.97
-"""Share of the duration with an exact stop that such a transition must not exceed."""
 _TINY = 1e-9
+#: Relative difference below which directions count as equal.
 _STRAIGHT = 1e-3
-"""Relative difference below which directions count as equal."""
+#: The smallest cosine of a corner whose speed is kept; a reversal has no finite curve.
 _BACK = -0.99
-"""The smallest cosine of a corner whose speed is kept; a reversal has no finite curve."""
 _ENDS = np.array([0.0, 1.0])
 
 

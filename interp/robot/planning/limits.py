@@ -23,21 +23,21 @@ from interp.robot.planning.axis_limits import AxisLimits
 from interp.robot.planning.ramps import Bounds
 from interp.robot.planning.torque_limits import TorqueLimits, TorqueMargin
 
+#: Share of a limit that is used, because limits are checked at samples only.
 _MARGIN = 0.97
-"""Share of a limit that is used, because limits are checked at samples only."""
 _ROUNDING = 1.0 - 1e-9
+#: Share of an axis's acceleration for changes of speed on a curve; the rest is for curvature.
 _SHARE = 0.5
-"""Share of an axis's acceleration for changes of speed on a curve; the rest is for curvature."""
+#: Share of an axis's jerk for curvature, and again for changes of speed on a curve; the rest is for
+#: building up accelerations.
 _BENT = 0.25
-"""Share of an axis's jerk for curvature, and again for changes of speed on a curve; the rest is for
-building up accelerations."""
+#: Share of the constant speed of a blend, if the speed changes in it.
 _EASED = 0.8
-"""Share of the constant speed of a blend, if the speed changes in it."""
+#: Ratio of speeds in a stretch above which it is cut.
 _UNEVEN = 1.25
-"""Ratio of speeds in a stretch above which it is cut."""
 _SHORTEST = 4  # samples of a stretch
+#: Seconds over which a path acceleration builds up: an assumption, no rule has a figure.
 _RAMP = 0.08
-"""Seconds over which a path acceleration builds up: an assumption, no rule has a figure."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,14 +18,14 @@ from interp.robot.planning.blend_zones import wants_blend
 from interp.robot.planning.plan import Passage, places_of
 from interp.robot.planning.timeline import APEX, MICROSECOND, Key, Section, Timeline, micros
 
+#: What comes first of events of a motion at one time.
 _ORDER: tuple[EventKind, ...] = (
     *("motion_start", "blend_end", "blend_start", "blend_apex"),
     *("place", "motion_end"),
 )
-"""What comes first of events of a motion at one time."""
 _ROUNDING = 1e-9  # of u
+#: How far in u a stop may end after its place and still be in time: a plan is exact to 1 µs.
 _NEAR = 1e-4
-"""How far in u a stop may end after its place and still be in time: a plan is exact to 1 µs."""
 
 #: Where a brake at a time in seconds would end: a section and its parameter.
 StopFrom = Callable[[float], tuple[Key, float] | None]

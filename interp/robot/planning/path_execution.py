@@ -9,10 +9,10 @@ from interp.robot.planning.junctions import SAME_CURVE, JoinedStretch, PathState
 from interp.robot.planning.schedule import Schedule, brakings, schedule
 from interp.robot.planning.timeline import Key, Leg, Section, Timeline
 
+#: A section whose rest is shorter than this, in u, counts as travelled.
 _THERE = 1e-9
-"""A section whose rest is shorter than this, in u, counts as travelled."""
+#: Seconds by which a time in whole microseconds may be before the event in it.
 _INSTANT = 2e-9
-"""Seconds by which a time in whole microseconds may be before the event in it."""
 
 #: A section and a stretch of it; ``None`` for a motion of no length.
 Entry = tuple[Section, JoinedStretch | None]

@@ -12,12 +12,12 @@ import ruckig
 from interp.robot.path.speed_profile import SpeedProfile, joined, profile_of, steady
 from interp.robot.planning.ramps import Bounds, ramp, speed_after
 
+#: Relative difference within which a change of speed fills a length.
 _SLACK = 1e-7
-"""Relative difference within which a change of speed fills a length."""
+#: Relative difference by which rounding may let the speed beside an end exceed its bound.
 _SPARE = 2e-6
-"""Relative difference by which rounding may let the speed beside an end exceed its bound."""
+#: Relative difference by which Ruckig may exceed the speed.
 _ROUNDING = 1e-11
-"""Relative difference by which Ruckig may exceed the speed."""
 
 
 @lru_cache(maxsize=256)  # plans that differ in a blend have most of their spans in common

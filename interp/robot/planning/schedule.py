@@ -16,8 +16,8 @@ from interp.robot.planning.junctions import JoinedStretch, PathState
 from interp.robot.planning.ramps import at_most
 from interp.robot.planning.spans import RATIOS, Span, spans_of
 
+#: Share of its constant speed below which a blend counts as slowed down by its neighbours.
 _HELD = 0.8
-"""Share of its constant speed below which a blend counts as slowed down by its neighbours."""
 
 #: The speed at the end of each span, and the length on which speeds exceed what is allowed.
 _Speeds = tuple[list[float], float]

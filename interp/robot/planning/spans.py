@@ -17,16 +17,16 @@ from interp.robot.planning.junctions import STOP, JoinedStretch, PathState
 from interp.robot.planning.profile import travel
 from interp.robot.planning.ramps import Bounds, at_most, ramp, speed_after
 
+#: Share of a length that changes of speed may use, so that rounding makes none impossible.
 _SPARE = 1.0 - 1e-6
-"""Share of a length that changes of speed may use, so that rounding makes none impossible."""
+#: Ratio above which two speeds count as equal.
 _ALIKE = 1.0 - 1e-3
-"""Ratio above which two speeds count as equal."""
+#: Ratios of speeds above which stretches are joined: the lower speed for fewer spans, or alike.
 RATIOS = (0.6, _ALIKE)
-"""Ratios of speeds above which stretches are joined: the lower speed for fewer spans, or alike."""
+#: Ratio of accelerations or jerks above which the lower one is better than another span.
 _ABOUT = 0.8
-"""Ratio of accelerations or jerks above which the lower one is better than another span."""
+#: Share of the maximum acceleration by which it may jump where two blends meet.
 _JUMP = 0.01
-"""Share of the maximum acceleration by which it may jump where two blends meet."""
 
 
 @dataclass(slots=True)

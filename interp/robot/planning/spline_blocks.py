@@ -26,10 +26,10 @@ from interp.robot.planning.tracks import STILL, Piece, Track, Tracks
 from interp.values.faults import Fault
 from interp.values.poses import Pose
 
+#: Of u, where a spline of axes is looked at for software limits: it may swing beyond its points.
 _CLOSE = np.linspace(0.0, 1.0, 257)
-"""Of u, where a spline of axes is looked at for software limits: it may swing beyond its points."""
+#: Segments of one block; where the limit of a controller lies is not published.
 _MOST_SEGMENTS = 1000
-"""Segments of one block; where the limit of a controller lies is not published."""
 
 
 def block(tracks: Tracks, motion: Motion, before: Programmed) -> tuple[Track, Programmed]:

@@ -23,8 +23,8 @@ from interp.robot.planning.tracks import Piece
 from interp.values.faults import Fault
 
 _ROUNDS = 60
+#: Relative difference below which speeds or durations count as equal.
 _SAME = 1e-6
-"""Relative difference below which speeds or durations count as equal."""
 
 Pieces = tuple[Piece, ...]
 

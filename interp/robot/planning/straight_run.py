@@ -21,8 +21,8 @@ from interp.robot.planning.limits import CurveLimits, curve_limits_of
 from interp.robot.planning.timeline import Key, Section
 from interp.robot.planning.tracks import Track, Tracks
 
+#: Distance of a point from a straight run, as a share of its length, that no axis can notice.
 _BESIDE = 2e-5
-"""Distance of a point from a straight run, as a share of its length, that no axis can notice."""
 _TINY = 1e-9
 
 

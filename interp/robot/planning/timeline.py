@@ -20,8 +20,8 @@ from interp.robot.planning.junctions import SAME_CURVE, STOP, JoinedStretch, Jun
 from interp.robot.planning.limits import CurveLimits, Stretch
 
 MICROSECOND = 1e-6
+#: The parameter of a blend at which the first motion ends and the second begins [TRG-02].
 APEX = 0.5
-"""The parameter of a blend at which the first motion ends and the second begins [TRG-02]."""
 #: The number of a motion, whether it is the blend behind it, and the part of a spline block.
 Key = tuple[int, bool, int]
 

@@ -18,13 +18,13 @@ from interp.robot.arm import Load
 from interp.robot.kinematics.kinematics import Array
 from interp.robot.path.axis_path import AxisPath
 
+#: Share of a torque that is used, because it is computed at samples only.
 _MARGIN = 0.95
-"""Share of a torque that is used, because it is computed at samples only."""
+#: Share of what gravity leaves that constant speed may take; the rest is for changing it.
 _FAST = 0.5
-"""Share of what gravity leaves that constant speed may take; the rest is for changing it."""
+#: Share of a torque that counts as free although gravity takes it: the arm moves, if slowly, and
+#: whoever simulates it reports that it cannot.
 _LEFT = 0.1
-"""Share of a torque that counts as free although gravity takes it: the arm moves, if slowly, and
-whoever simulates it reports that it cannot."""
 _FEWEST, _MOST = 33, 129  # samples of a curve
 
 

@@ -37,8 +37,8 @@ from interp.values.poses import Pose
 STILL = 1e-6  # mm or degrees: less is no motion
 _ZERO_LENGTH, _SINGULAR, _TURNED_VARIABLY = 3171, 2868, 2821
 METRE = 1000.0
+#: mm/s³ and deg/s³: as delivered [MOT-05].
 _SPLINE_JERKS = (500e3, 50e3)
-"""mm/s³ and deg/s³: as delivered [MOT-05]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -23,8 +23,8 @@ from interp.values.poses import Pose
 if TYPE_CHECKING:
     from interp.robot.simulation.robot_files import RobotFile
 
+#: For each load, the number of the link that carries it.
 _LOADS: Final = {"$LOAD": 6, "$LOAD_A1": 1, "$LOAD_A2": 2, "$LOAD_A3": 3}
-"""For each load, the number of the link that carries it."""
 _SHAPES: Final = {
     "box": mujoco.mjtGeom.mjGEOM_BOX,
     "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER,

@@ -104,8 +104,8 @@ def reach_of(machine: MachineData) -> float:
     return abs(machine.length_a) + machine.length_b + math.hypot(forward, aside, up)
 
 
+#: Rotor inertia as a fraction of the arm's mass times the square of its reach.
 _ROTORS = (0.012, 0.012, 0.008, 0.001, 0.001, 0.0006)
-"""Rotor inertia as a fraction of the arm's mass times the square of its reach."""
 
 
 def _foot(machine: MachineData, mass: float) -> tuple[Capsule, ...]:

@@ -27,9 +27,9 @@ from interp.robot.simulation.robot import Measured, RobotFault, check_samples
 _STEP = 1_000  # µs
 _CHUNK = 120_000  # µs
 _STIFFNESS = 250.0  # 1/s: decay rate of an error; 1/4 per step, far from instability
+#: Degrees or mm of tracking error at which the arm counts as lost; only a model that is too stiff
+#: for its steps is known to reach it.
 _LOST = 2.0
-"""Degrees or mm of tracking error at which the arm counts as lost; only a model that is too stiff
-for its steps is known to reach it."""
 
 _STILL = 1e-9  # rad or m, and per second: below this a joint is at rest without an error
 
