@@ -7,12 +7,11 @@ functions return 0.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import zip_longest
 
 from grammar.semantics.packages import PackageRoutine
-from grammar.semantics.types import Array, Constant, Scalar, Text, Type
 from interp.standins.default_values import NOTHING
 from interp.standins.derived_declarations import DerivedDeclarations, TypedValue, number
 from interp.standins.uses import DataUse, RoutineUse
@@ -69,7 +68,7 @@ def _parameters(
     signature = () if known is None or known.has_more else known.parameters
     pairs = zip_longest(use.arguments, signature)
     for place, (given, typed) in enumerate(pairs, start=1):
-        one = _parameter(f"P{place}", name, given or (), declarations)
+        one = _parameter(f"P{place}", name, given or DataUse(is_assigned=True), declarations)
         if typed is not None and not typed.is_out and declarations.type_named(typed.type):
             kind = TypedValue(typed.type, one.kind.value, is_text=typed.is_array)
             one = _Parameter(one.name, kind, is_out=False, brackets="[]" if typed.is_array else "")
@@ -77,36 +76,15 @@ def _parameters(
 
 
 def _parameter(
-    name: str,
-    routine: str,
-    given: Sequence[tuple[Type, bool]],
-    declarations: DerivedDeclarations,
+    name: str, routine: str, use: DataUse, declarations: DerivedDeclarations
 ) -> _Parameter:
-    """Return a parameter as its arguments imply it: each with whether it is a variable."""
-    use = DataUse(is_assigned=True)
-    brackets = ""
-    for type_, _ in given:
-        match type_:
-            case Constant(name=constant):
-                use.constants.setdefault(constant.upper(), constant)
-            case Text() | Array(element=Scalar(name="CHAR")):
-                use.is_text = True
-            case Array(element=element, sizes=sizes):
-                use.types.append(element)
-                brackets = f"[{',' * (len(sizes) - 1)}]"
-            case _:
-                use.types.append(type_)
+    """Return a parameter as its arguments imply it."""
     kind = declarations.typed_value(f"{routine}_{name}", use) or number(use)
-    is_out = bool(given) and all(
-        is_variable and str(_element(type_)) == kind.type for type_, is_variable in given
-    )
     if kind.is_text:
         return _Parameter(name, kind, is_out=False, brackets="[]")
+    is_out = use.is_variable and bool(use.types) and {kind.type} == {*map(str, use.types)}
+    brackets = f"[{',' * (use.indices - 1)}]" if use.indices else ""
     return _Parameter(name, kind, is_out, brackets)
-
-
-def _element(type_: Type) -> Type:
-    return type_.element if isinstance(type_, Array) else type_
 
 
 def _result(

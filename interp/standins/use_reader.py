@@ -253,13 +253,15 @@ class _Reader:
             use.is_function = use.is_function or is_value
             for place, argument in enumerate(node.arguments):
                 if place == len(use.arguments):
-                    use.arguments.append([])
+                    use.arguments.append(DataUse(is_assigned=True))
                 if argument is not None:
                     type_ = self._type(argument)
                     if isinstance(argument, ast.Subscript) and argument.indices == (None,):
                         type_ = type_ if isinstance(type_, Array) else Array(CHAR, (None,))
                         self._expect(argument, type_)
-                    use.arguments[place].append((type_, self._is_variable(argument)))
+                    given = use.arguments[place]
+                    given.record(type_)
+                    given.is_variable &= type_ != UNKNOWN and self._is_variable(argument)
         elif found is not None and isinstance(found.symbol, RoutineSymbol):
             for output in node.arguments[:1] if node.name.key == "PULSE" else ():
                 pulsed = None if output is None else self._use(output)

@@ -61,6 +61,9 @@ class DataUse:
     is_compared: bool = False
     asked_for: str = ""
     cases: set[str] = field(default_factory=set)
+    #: Whether everything that is passed for it is a variable of a known type, which a call can
+    #: change.
+    is_variable: bool = True
 
     def member(self, name: ast.Name) -> DataUse:
         """Return the use of a member."""
@@ -86,15 +89,11 @@ class DataUse:
 
 @dataclass(slots=True, eq=False)
 class RoutineUse:
-    """The result of a routine, and the arguments of its calls.
-
-    ``arguments`` has an entry for each parameter: the type of each argument passed to it, and
-    whether the argument is a variable that the routine may change.
-    """
+    """The result of a routine, and for each parameter what its calls pass to it."""
 
     result: DataUse = field(default_factory=DataUse)
     is_function: bool = False
-    arguments: list[list[tuple[Type, bool]]] = field(default_factory=list)
+    arguments: list[DataUse] = field(default_factory=list)
 
 
 class _TypeClasses:
