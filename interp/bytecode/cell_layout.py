@@ -33,6 +33,7 @@ from grammar.semantics.types import (
 )
 from interp.bytecode.instruction_set.table import MAX_CELLS
 from interp.port.requests import Path
+from interp.program.variables import cells, is_complete
 from interp.values.faults import LinkError
 from interp.values.values import ArrayValue, EnumValue, StructureValue, Value, converted
 
@@ -79,15 +80,9 @@ def elements(type_: Array) -> int:
 @lru_cache(_REMEMBERED)
 def size(type_: Type) -> int:
     """Return the size of a type in cells; raises `LinkError` if it has none or is too large."""
-    match type_:
-        case Scalar() | Enumeration():
-            return 1
-        case Structure() if type_.members:
-            found = sum(size(member.type) for member in type_.members)
-        case Array() if not isinstance(type_.element, Array):
-            found = elements(type_) * size(type_.element)
-        case _:
-            raise LinkError(f"no variable can be of {type_}")
+    if not is_complete(type_):
+        raise LinkError(f"no variable can be of {type_}")
+    found = cells(type_)
     if found > MAX_CELLS:
         raise LinkError(f"{type_} has {found:,} cells, more than {MAX_CELLS:,}")
     return found

@@ -14,6 +14,7 @@ from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from enum import Enum
 from functools import cached_property
+from itertools import accumulate
 from operator import attrgetter
 from typing import ClassVar
 
@@ -25,6 +26,8 @@ from support.lazy_dataclass import dataclass
 
 #: The types that every program begins with.
 BASIC_TYPES: tuple[Type, ...] = tuple(SCALARS.values())
+#: The maximum nesting of types and of parts of requests.
+DEEPEST = 64
 
 
 class Mode(Enum):
@@ -119,6 +122,13 @@ class Record:
 Argument = Constant | Choice | Input | Changed | Handle | Items | Record
 
 
+def part_kind(part: Argument) -> object:
+    """Return what kind of part this is: its class, or the type of a constant or its value."""
+    if isinstance(part, Constant):
+        return part.value if isinstance(part.value, bool | None) else type(part.value)
+    return type(part)
+
+
 @dataclass(frozen=True, slots=True)
 class Ask:
     """A request with its fields; inputs are on the stack in the order of the fields.
@@ -143,14 +153,19 @@ def printable(text: str) -> str:
     return "".join(one if one.isprintable() else repr(one)[1:-1] for one in text)
 
 
-def variables(code: Code) -> tuple[Parameter | Local, ...]:
+def variables(code: Code) -> tuple[Variable, ...]:
     """Return the parameters and locals of a code object, in the order of the frame."""
     return (*code.parameters, *code.locals)
 
 
-def stack_cells(given: Parameter | Local | Input) -> int:
+def stack_cells(given: Data | Variable | Input) -> int:
     """Return the number of stack cells of an argument; a structure is passed by reference."""
     return 1 + given.dimensions
+
+
+def width(variable: Data | Variable, type_: Type) -> int:
+    """Return the number of cells of a variable of this type in its data list or frame."""
+    return size(type_) if variable.mode is Mode.IN else stack_cells(variable)
 
 
 def inputs_of(parts: tuple[Argument, ...]) -> Iterator[Input]:
@@ -172,6 +187,8 @@ def inputs_of(parts: tuple[Argument, ...]) -> Iterator[Input]:
 class Data:
     """A variable of a data list; ``is_global`` if other modules can see it."""
 
+    mode: ClassVar[Mode] = Mode.IN
+    dimensions: ClassVar[int] = 0
     module: str
     name: str
     type: int
@@ -193,8 +210,11 @@ class Import:
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
-    """A parameter of a code object; for views see `Input`."""
+class Variable:
+    """A parameter or a local variable of a code object; for views see `Input`.
+
+    A local variable has the mode ``IN``, and no value when the frame is created.
+    """
 
     name: str
     mode: Mode
@@ -203,22 +223,12 @@ class Parameter:
 
 
 @dataclass(frozen=True, slots=True)
-class Local:
-    """A local variable; it has no value when the frame is created."""
-
-    mode: ClassVar[Mode] = Mode.IN
-    dimensions: ClassVar[int] = 0
-    name: str
-    type: int
-
-
-@dataclass(frozen=True, slots=True)
 class Slot:
     """The position of a parameter or local in the frame, in cells."""
 
     offset: int
     cells: int
-    variable: Parameter | Local
+    variable: Variable
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,9 +254,9 @@ class Code:
     file: str
     line: int
     owner: int | None
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[Variable, ...]
     captures: tuple[int, ...]
-    locals: tuple[Local, ...]
+    locals: tuple[Variable, ...]
     result: int | None
     stack: int
     instructions: tuple[Instruction, ...]
@@ -272,10 +282,7 @@ class Program:
     @cached_property
     def addresses(self) -> tuple[int, ...]:
         """The address of each variable of the data lists, followed by the total number of cells."""
-        places = [0]
-        for variable in self.data:
-            places.append(places[-1] + size(self.types[variable.type]))
-        return tuple(places)
+        return tuple(accumulate(map(self.width, self.data), initial=0))
 
     @cached_property
     def cells(self) -> tuple[Raw | None, ...]:
@@ -301,18 +308,13 @@ class Program:
 
     def slots(self, code: Code) -> tuple[Slot, ...]:
         """Return the positions of the parameters and locals of a code object, in order."""
-        slots: list[Slot] = []
-        offset = 0
-        for variable in variables(code):
-            cells = self.width(variable)
-            slots.append(Slot(offset, cells, variable))
-            offset += cells
-        return tuple(slots)
+        found = variables(code)
+        widths = [self.width(one) for one in found]
+        return tuple(map(Slot, accumulate(widths, initial=0), widths, found))
 
-    def width(self, variable: Parameter | Local) -> int:
-        """Return the number of cells of a parameter or local in its frame."""
-        is_value = variable.mode is Mode.IN
-        return size(self.types[variable.type]) if is_value else stack_cells(variable)
+    def width(self, variable: Data | Variable) -> int:
+        """Return the number of cells of a variable."""
+        return width(variable, self.types[variable.type])
 
     def frame_size(self, code: Code) -> int:
         """Return the number of cells of a frame of the code object."""

@@ -13,6 +13,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from interp.bytecode.cell_layout import bits_of, real_of
 from interp.bytecode.program import printable
@@ -20,12 +21,21 @@ from interp.port.requests import Path, path_text
 from interp.values.faults import Fault
 from interp.values.values import single
 
-#: A name, and the how manieth it is of those that are called so.
-Label = tuple[str, int]
 
+class Label(NamedTuple):
+    """A name, with that of its module if it has one, and the how manieth it is of these names."""
 
-#: A label as it is compared: letter case does not matter.
-Key = tuple[str, int]
+    names: tuple[str, ...]
+    number: int = 1
+
+    @property
+    def key(self) -> Label:
+        """The label as it is compared: letter case does not matter."""
+        return Label(tuple(name.upper() for name in self.names), self.number)
+
+    def __str__(self) -> str:
+        number = f"@{self.number}" if self.number > 1 else ""
+        return ".".join(map(name_text, self.names)) + number
 
 
 class AssemblyError(Exception):
@@ -62,29 +72,26 @@ class Token:
 
 
 class Line:
-    """The tokens of a line, taken one after the other."""
+    """The tokens of a line, taken one after the other.
+
+    ``place`` counts those that are taken; it can be set back.
+    """
 
     def __init__(self, number: int, tokens: Sequence[Token]) -> None:
         self.number = number
+        self.place = 0
+        #: The number of parts around the one that is read.
+        self.depth = 0
         self._tokens = tokens
-        self._next = 0
 
     def error(self, message: str) -> AssemblyError:
         """Return an error on this line, for the caller to raise."""
         return AssemblyError(self.number, message)
 
-    @property
-    def is_done(self) -> bool:
-        """Return whether all tokens are read."""
-        return self._next == len(self._tokens)
-
-    def restart(self) -> None:
-        """Goes back to the first token."""
-        self._next = 0
-
-    def peek(self) -> Token | None:
-        """Return the next token without reading it."""
-        return None if self.is_done else self._tokens[self._next]
+    def peek(self, ahead: int = 0) -> Token | None:
+        """Return the next token, or one after it, without reading it."""
+        place = self.place + ahead
+        return self._tokens[place] if place < len(self._tokens) else None
 
     def take(self, kind: str, what: str) -> str:
         """Read a token of a kind; ``what`` names it in the error message."""
@@ -93,16 +100,19 @@ class Line:
             raise self.error(f"{what} is missing")
         if token.kind != kind:
             raise self.error(f"{what} is needed, not {token.text}")
-        self._next += 1
+        self.place += 1
         return token.text
+
+    def at(self, *texts: str, ahead: int = 0) -> bool:
+        """Return whether the next token, or one after it, is one of these marks and words."""
+        token = self.peek(ahead)
+        return token is not None and token.text in texts and token.kind != "string"
 
     def found(self, text: str) -> bool:
         """Takes the next token if it is this mark or word."""
-        token = self.peek()
-        if token is None or token.text != text or token.kind == "string":
-            return False
-        self._next += 1
-        return True
+        is_next = self.at(text)
+        self.place += is_next
+        return is_next
 
     def expect(self, text: str) -> None:
         """Takes this mark or word, which must come next."""
@@ -144,10 +154,22 @@ class Line:
         """Read a name, which may be quoted."""
         return self.string() if self.has("string") else self.take("word", "a name")
 
-    def label(self) -> Label:
-        """Read a name with its number."""
-        name = self.name()
-        return (name, self.integer(1) if self.found("@") else 1)
+    def indices(self) -> list[int]:
+        """Read numbers in brackets."""
+        self.expect("[")
+        found = [self.integer()]
+        while self.found(","):
+            found.append(self.integer())
+        self.expect("]")
+        return found
+
+    def label(self, parts: int = 1) -> Label:
+        """Read a label with so many names."""
+        names = [self.name()]
+        while len(names) < parts:
+            self.expect(".")
+            names.append(self.name())
+        return Label(tuple(names), self.integer(1) if self.found("@") else 1)
 
     def done(self) -> None:
         """Makes sure that nothing is left."""
@@ -215,22 +237,12 @@ def part_text(path: Path) -> str:
     return path_text(("", *(name_text(one) if isinstance(one, str) else one for one in path)))
 
 
-def labels(names: Iterable[str]) -> list[Label]:
+def labels(names: Iterable[tuple[str, ...]]) -> list[Label]:
     """Return a label for each name; labels differ in more than letter case."""
-    seen: Counter[str] = Counter()
+    seen: Counter[Label] = Counter()
     found = []
-    for name in names:
-        seen[name.upper()] += 1
-        found.append((name, seen[name.upper()]))
+    for one in names:
+        key = Label(one).key
+        seen[key] += 1
+        found.append(Label(one, seen[key]))
     return found
-
-
-def key(label: Label) -> Key:
-    """Return a label without its letter case."""
-    return label[0].upper(), label[1]
-
-
-def label_text(label: Label) -> str:
-    """Return a label as it is written: ``NAME``, or ``NAME@2`` for the second of a name."""
-    name, number = label
-    return name_text(name) + (f"@{number}" if number > 1 else "")

@@ -226,9 +226,7 @@ class Calls(CodeMaker):
             self._emit(Op.STORE_LOCAL, kept.offset)
             self._memory.refer(kept)
             return
-        self._memory.refer_below(kept, behind)
-        self._memory.store_block(type_, value, behind + 1)
-        self._memory.refer(kept)
+        self._memory.converted_below(kept, value, behind)
 
     def _copied_view(self, type_: Type, argument: ast.Expression) -> Bound:
         """Push a view of a copy of a value."""
@@ -254,9 +252,7 @@ class Calls(CodeMaker):
         ):
             raise self._emitter.unlinked(str(mismatched(type_)))
         kept = FrameCells(self._writer.temporary(made), made)
-        self._memory.refer_below(kept, behind)
-        self._memory.store_block(made, value, behind + 1)
-        self._memory.refer(kept)
+        self._memory.converted_below(kept, value, behind)
         return self._memory.as_view(Reference(made)).most
 
     def _copied_to_buffer(self, type_: Array, value: View) -> Bound:

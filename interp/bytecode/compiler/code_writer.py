@@ -18,10 +18,9 @@ from interp.bytecode.program import (
     Code,
     CodeKind,
     Instruction,
-    Local,
     Mode,
-    Parameter,
-    stack_cells,
+    Variable,
+    width,
 )
 from support.lazy_dataclass import dataclass
 
@@ -77,9 +76,9 @@ class Writer:
     line: int
     owner: int | None = None
     result: int | None = None
-    parameters: list[Parameter] = field(default_factory=list)
+    parameters: list[Variable] = field(default_factory=list)
     captures: list[int] = field(default_factory=list)
-    _locals: list[Local] = field(default_factory=list)
+    _locals: list[Variable] = field(default_factory=list)
     _cells: int = 0
     _code: list[PendingInstruction] = field(default_factory=list)
     _labels: list[Label] = field(default_factory=list)
@@ -95,16 +94,14 @@ class Writer:
         """Add a parameter and return its offset."""
         assert not self._locals, "parameters come first"
         number = self.tables.number(type_)
-        parameter = Parameter(name, mode, number, dimensions)
+        parameter = Variable(name, mode, number, dimensions)
         self.parameters.append(parameter)
-        is_value = mode is Mode.IN
-        cells = size(self.tables.types[number]) if is_value else stack_cells(parameter)
-        return self._reserved(cells)
+        return self._reserved(width(parameter, self.tables.types[number]))
 
     def local(self, name: str, type_: Type) -> int:
         """Add a variable and return its offset."""
         number = self.tables.number(type_)
-        self._locals.append(Local(name, number))
+        self._locals.append(Variable(name, Mode.IN, number))
         return self._reserved(size(self.tables.types[number]))
 
     def _reserved(self, cells: int) -> int:

@@ -89,6 +89,16 @@ class Memory:
         """Insert a reference to cells of the frame below what was pushed from ``at`` on."""
         self._writer.insert(at, Op.REF_LOCAL, place.offset, self._emitter.number(place.type))
 
+    def kept(self, value: Reference | Scalar, behind: int) -> FrameCells:
+        """Copy the value that was pushed from ``behind`` on to the frame; return where it is."""
+        kept = FrameCells(self._writer.temporary(value.type), value.type)
+        self.refer_below(kept, behind)
+        if isinstance(value, Reference):
+            self._emit(Op.COPY, self._emitter.number(value.type))
+        else:
+            self._emit(Op.STORE)
+        return kept
+
     def view(self, place: ViewParameter | PushedView, *, may_be_missing: bool = False) -> View:
         """Push a view."""
         if isinstance(place, ViewParameter):
@@ -241,6 +251,12 @@ class Memory:
             return
         self.store_block(place.type, value, behind)
 
+    def converted_below(self, kept: FrameCells, value: Value, behind: int) -> None:
+        """Store the value that was pushed from ``behind`` on in the frame, and refer to it."""
+        self.refer_below(kept, behind)
+        self.store_block(kept.type, value, behind + 1)
+        self.refer(kept)
+
     def store_block(self, type_: Type, value: Value, behind: int) -> None:
         """Store in a structure or array; the reference to it lies below the value."""
         match value:
@@ -289,9 +305,7 @@ class Memory:
             return Input(Mode.IN, self._emitter.number(type_))
         if value != Reference(type_):
             kept = FrameCells(self._writer.temporary(type_), type_)
-            self.refer_below(kept, behind)
-            self.store_block(type_, value, behind + 1)
-            self.refer(kept)
+            self.converted_below(kept, value, behind)
         return Input(Mode.REF, self._emitter.number(type_))
 
     def handed(self, value: Value) -> Argument:

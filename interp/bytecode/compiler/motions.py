@@ -102,20 +102,7 @@ class Motions(CodeMaker):
         value = self._expressions.value(node)
         if not isinstance(value, Reference | Scalar):
             raise self._emitter.refuse("a motion goes to what is no position")
-        return self._kept_value(value, behind)
-
-    def _kept_value(self, value: Reference | Scalar, behind: int) -> FrameCells:
-        """Generate a copy of the value that was pushed by the code from ``behind`` on."""
-        kept = FrameCells(self._writer.temporary(value.type), value.type)
-        self._writer.insert(behind, Op.REF_LOCAL, kept.offset, self._emitter.number(kept.type))
-        self._emit(
-            *(
-                (Op.COPY, self._emitter.number(kept.type))
-                if isinstance(value, Reference)
-                else (Op.STORE,)
-            )
-        )
-        return kept
+        return self._memory.kept(value, behind)
 
     def _optional(self, node: ast.Expression | None, type_: Type) -> Argument:
         if node is None:
@@ -136,7 +123,7 @@ class Motions(CodeMaker):
             if isinstance(value, Reference) and (
                 is_early or self._disturbs(_parts_of_values(nodes[number:]))
             ):
-                kept = self._kept_value(value, behind)
+                kept = self._memory.kept(value, behind)
                 behind = self._writer.here
                 self._memory.refer(kept)
             found.append(Items((path, self._memory.remote_value(place.type, value, behind))))
@@ -225,9 +212,7 @@ class Motions(CodeMaker):
     def _forget(self, place: Location, behind: int) -> None:
         """Remove an unused location from the stack; its index may still be out of range."""
         if isinstance(place, Pushed):
-            kept = FrameCells(self._writer.temporary(place.type), place.type)
-            self._writer.insert(behind, Op.REF_LOCAL, kept.offset, self._emitter.number(kept.type))
-            self._emit(Op.COPY, self._emitter.number(kept.type))
+            self._memory.kept(Reference(place.type), behind)
         elif isinstance(place, PushedView):
             self._writer.cut(behind)
 

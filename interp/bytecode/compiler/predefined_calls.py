@@ -146,12 +146,11 @@ class PredefinedCalls(CodeMaker):
         """Push a copy of a system variable, which is written back if it has changed."""
         behind = self._writer.here
         value = self._memory.read(place)
-        kept = FrameCells(self._writer.temporary(value.type), value.type)
         if isinstance(value, Scalar):
+            kept = FrameCells(self._writer.temporary(value.type), value.type)
             self._emit(Op.STORE_LOCAL, kept.offset)
         else:
-            self._memory.refer_below(kept, behind)
-            self._emit(Op.COPY, self._emitter.number(value.type))
+            kept = self._memory.kept(value, behind)
         path = self._memory.pushed_path(place)
         self._memory.refer(kept)
         return Changed(Input(Mode.REF, self._emitter.number(value.type)), None, path)

@@ -37,8 +37,6 @@ class WordReader:
         self._next = 0
         self.strings = strings
         self.types = types
-        #: The names of those that were read in this section, in upper case.
-        self.names: set[str] = set()
         #: The number of parts around the one that is read.
         self.depth = 0
 

@@ -24,10 +24,10 @@ tables here. Jump targets are word offsets in the code object.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 from grammar.semantics.types import Array, Enumeration, Member, Structure, Type
 from interp.bytecode._generated.opcodes import Op
-from interp.bytecode.cell_layout import size
 from interp.bytecode.image.codec import (
     OPTIONAL,
     REAL,
@@ -44,6 +44,7 @@ from interp.bytecode.image.codec import (
 )
 from interp.bytecode.instruction_set.table import Shape, instructions
 from interp.bytecode.program import (
+    DEEPEST,
     Argument,
     Ask,
     Builtin,
@@ -58,14 +59,11 @@ from interp.bytecode.program import (
     Input,
     Instruction,
     Items,
-    Local,
     Mode,
-    Parameter,
     Record,
+    Variable,
+    part_kind,
 )
-from interp.values.faults import LinkError
-
-_DEEPEST = 64
 
 # ------------------------------------------------------------------------------------ types
 
@@ -79,19 +77,11 @@ _TYPES: Mapping[type, Codec] = {
 
 
 def _read_type(reader: WordReader) -> Type:
-    """Read a type and add it; names are unique, so that types can be compared by name."""
+    """Read a type and add it."""
     number = reader.word()
     if number >= len(_TYPES):
         raise reader.error("there is no such kind of type")
     found: Type = [*_TYPES.values()][number].read(reader)
-    if isinstance(found, Structure | Enumeration):
-        if found.name.upper() in reader.names:
-            raise reader.error(f"there are two types {found.name}")
-        reader.names.add(found.name.upper())
-    try:
-        size(found)
-    except LinkError as error:
-        raise reader.error(str(error)) from None
     reader.types.append(found)
     return found
 
@@ -105,7 +95,7 @@ def _write_type(to: WordWriter, type_: Type) -> None:
 
 
 def _read_part(reader: WordReader) -> Argument:
-    if reader.depth > _DEEPEST:
+    if reader.depth > DEEPEST:
         raise reader.error("parts are nested too deeply")
     number = reader.word()
     if number >= len(_PARTS):
@@ -117,9 +107,7 @@ def _read_part(reader: WordReader) -> Argument:
 
 
 def _write_part(to: WordWriter, part: Argument) -> None:
-    kind: object = type(part)
-    if isinstance(part, Constant):
-        kind = part.value if isinstance(part.value, bool | None) else type(part.value)
+    kind = part_kind(part)
     to.put([*_PARTS].index(kind))
     _PARTS[kind].write(to, part)
 
@@ -205,9 +193,9 @@ _CODE = record(
     kind=one_of(tuple(CodeKind)),
     line=WORD,
     owner=OPTIONAL,
-    parameters=list_of(record(Parameter, name=STRING, **_PASSED)),
+    parameters=list_of(record(Variable, name=STRING, **_PASSED)),
     captures=list_of(WORD),
-    locals=list_of(record(Local, name=STRING, type=WORD)),
+    locals=list_of(record(partial(Variable, mode=Mode.IN), name=STRING, type=WORD)),
     result=OPTIONAL,
     stack=WORD,
     instructions=Codec(_read_body, _write_body),

@@ -51,10 +51,10 @@ from interp.bytecode.program import (
     Instruction,
     Items,
     Mode,
-    Parameter,
     Program,
     Record,
     Slot,
+    Variable,
     inputs_of,
     slot_at,
 )
@@ -125,12 +125,9 @@ class StackEffects:
     def passed(self, place: int, mode: Mode) -> StackItem:
         """Return what is passed for a parameter."""
         slot = self._slot(place)
-        parameter = slot.variable
-        if slot.offset != place or not isinstance(parameter, Parameter):
-            raise Refused("no parameter begins at this cell")
-        if parameter.mode is not mode:
-            raise Refused("the parameter is passed in another way")
-        return item_of(parameter)
+        if slot.offset != place or slot.variable.mode is not mode:
+            raise Refused("no parameter begins at this cell that is passed so")
+        return item_of(slot.variable)
 
     def cell(self, place: tuple[Type, int]) -> StackItem:
         """Return the value of a cell of a variable, which `variable` or `data_variable` finds."""
@@ -253,7 +250,7 @@ class StackEffects:
             if replace(item, is_missing=False) != wanted and not is_left_out:
                 raise Refused(f"an argument has the wrong type: {parameter.name}")
 
-    def _argument(self, parameter: Parameter) -> StackItem:
+    def _argument(self, parameter: Variable) -> StackItem:
         """Return the item for an argument; a structure is passed by reference."""
         if parameter.mode is Mode.IN and not isinstance(self._types[parameter.type], Plain):
             return reference_to(parameter.type)

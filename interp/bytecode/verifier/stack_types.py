@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from interp.bytecode.program import Input, Mode, Parameter
+from interp.bytecode.program import Input, Mode, Variable
 
 
 class Refused(Exception):
@@ -69,6 +69,6 @@ def view_of(type_: int, dimensions: int) -> StackItem:
     return StackItem(Mode.VIEW, type_, 1 + dimensions)
 
 
-def item_of(given: Parameter | Input) -> StackItem:
+def item_of(given: Variable | Input) -> StackItem:
     """Return the stack item for an argument."""
     return StackItem(given.mode, given.type, 1 + given.dimensions)

@@ -25,6 +25,7 @@ from interp.bytecode.cell_layout import Plain, is_word_of, kind_at, path_to, rea
 from interp.bytecode.instruction_set.table import MAX_CELLS, OPERAND_KINDS, shape
 from interp.bytecode.program import (
     BASIC_TYPES,
+    DEEPEST,
     Argument,
     Ask,
     Changed,
@@ -36,9 +37,9 @@ from interp.bytecode.program import (
     Input,
     Items,
     Mode,
-    Parameter,
     Program,
     Record,
+    Variable,
     printable,
     slot_at,
 )
@@ -47,8 +48,6 @@ from interp.values.faults import LinkError
 from interp.values.values import single
 
 _MOST_DIMENSIONS = 3
-#: The maximum nesting of types and of parts of requests.
-_DEEPEST = 64
 
 
 _Entry = TypeVar("_Entry", bound=Ask)
@@ -113,7 +112,7 @@ class _Tables:
             if any(part not in depths for part in parts):
                 raise VerificationError(f"{type_} uses types that are not defined before it")
             depths[type_] = 1 + max((depths[part] for part in parts), default=0)
-            if depths[type_] > _DEEPEST:
+            if depths[type_] > DEEPEST:
                 raise VerificationError(f"{type_} is nested too deeply")
             try:
                 size(type_)
@@ -202,7 +201,7 @@ class _Tables:
 
     # -------------------------------------------------------------------------------- code
 
-    def _handed_over(self, given: Input | Parameter, where: str) -> None:
+    def _handed_over(self, given: Input | Variable, where: str) -> None:
         type_ = self._type(given.type, where)
         if given.mode is Mode.VIEW:
             if isinstance(type_, Array) or not 1 <= given.dimensions <= _MOST_DIMENSIONS:
@@ -253,7 +252,7 @@ class _Tables:
             if not self._can_capture(owner, parameter, place):
                 raise VerificationError(f"{code.name}: the owner has no {parameter.name} there")
 
-    def _can_capture(self, owner: Code, wanted: Parameter, place: int) -> bool:
+    def _can_capture(self, owner: Code, wanted: Variable, place: int) -> bool:
         slot = slot_at(self._program.slots(owner), place)
         if slot is None:
             return False
@@ -303,24 +302,12 @@ class _Tables:
 
 
 def _parts(type_: Type) -> Iterator[Type]:
-    """Yield the types of which a type is composed; names are compared without regard to case."""
+    """Yield the types of which a type is composed."""
     match type_:
         case Structure():
-            _distinct(type_, [member.name for member in type_.members])
             yield from (member.type for member in type_.members)
-        case Enumeration():
-            _distinct(type_, type_.constants)
         case Array():
             yield type_.element
-            if not 1 <= len(type_.sizes) <= _MOST_DIMENSIONS:
-                raise VerificationError("an array has 1 to 3 dimensions")
-        case _:
-            raise VerificationError(f"no variable can have the type {type_}")
-
-
-def _distinct(type_: Type, names: Sequence[str]) -> None:
-    if not names or len({name.upper() for name in names}) != len(names):
-        raise VerificationError(f"{type_} must have parts, with different names")
 
 
 def _all_parts(parts: Sequence[Argument], depth: int) -> Iterator[Argument]:
@@ -332,6 +319,6 @@ def _all_parts(parts: Sequence[Argument], depth: int) -> Iterator[Argument]:
         elif isinstance(part, Changed):
             inner = (part.given, *([part.path] if part.path else []))
         if inner:
-            if depth == _DEEPEST:
+            if depth == DEEPEST:
                 raise VerificationError("parts of a request are nested too deeply")
             yield from _all_parts(inner, depth + 1)

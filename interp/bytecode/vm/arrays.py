@@ -12,7 +12,7 @@ from interp.bytecode.cell_layout import array_sizes, size
 from interp.bytecode.program import slot_at
 from interp.bytecode.vm.context import DATA_LISTS, Frame, Rule, Rules, Site
 from interp.bytecode.vm.data_movement import load
-from interp.bytecode.vm.state import Operation
+from interp.bytecode.vm.state import Operation, then
 from interp.values.faults import fault
 
 
@@ -106,24 +106,10 @@ class ArrayRules(Rules):
         return operation
 
     def _push_no_view(self, site: Site, _type: int, dimensions: int) -> Operation:
-        stack, after = self._stack, site.after
-        nothing = [None, *[0] * dimensions]
-
-        def operation() -> Operation:
-            stack.extend(nothing)
-            return after
-
-        return operation
+        return then(partial(self._stack.extend, (None, *[0] * dimensions)), site.after)
 
     def _view(self, site: Site, number: int) -> Operation:
-        sizes, _ = self._array(number)
-        stack, after = self._stack, site.after
-
-        def operation() -> Operation:
-            stack.extend(sizes)
-            return after
-
-        return operation
+        return then(partial(self._stack.extend, self._array(number)[0]), site.after)
 
     def _load_view(self, site: Site, place: int) -> Operation:
         state, cells, stack, after = self._state, self._cells, self._stack, site.after

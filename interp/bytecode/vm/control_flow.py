@@ -9,7 +9,7 @@ from typing import Any
 
 from interp.bytecode._generated.opcodes import Op
 from interp.bytecode.cell_layout import Plain, size
-from interp.bytecode.program import CodeKind, Mode, Parameter, stack_cells
+from interp.bytecode.program import CodeKind, Mode, Variable, stack_cells
 from interp.bytecode.vm.context import DATA_LISTS, Frame, Rule, Rules, Site
 from interp.bytecode.vm.state import Operation, raising
 from interp.values.faults import FAULTS, LinkError, fault
@@ -99,7 +99,7 @@ class ControlRules(Rules):
 
         return operation
 
-    def _receiver(self, parameters: Sequence[Parameter]) -> Callable[[list[Any]], list[Any]] | None:
+    def _receiver(self, parameters: Sequence[Variable]) -> Callable[[list[Any]], list[Any]] | None:
         """Return a function that copies structures among arguments; ``None`` without any."""
         cells = self._cells
         widths = [

@@ -15,7 +15,7 @@ from typing import Final
 
 from grammar.semantics.types import BOOL, REAL, Type
 from interp.bytecode.cell_layout import kind_at
-from interp.bytecode.program import CodeKind, Mode, Parameter, Program, stack_cells
+from interp.bytecode.program import CodeKind, Mode, Program, stack_cells
 from interp.bytecode.verifier.verify import Verified
 from interp.native._core import Core
 from interp.native.c_backend.register_code import CALLS, Step, roles_of
@@ -147,9 +147,8 @@ class _Routine:
         self._counted, self._later = self._flow.blocks()
         #: The number of cells of its parameters, and whether calls store them in the frame instead
         #: of passing them.
-        self._received = sum(
-            one.cells for one in self._slots if isinstance(one.variable, Parameter)
-        )
+        count = len(program.codes[number].parameters)
+        self._received = sum(one.cells for one in self._slots[:count])
         self._is_copied = any(one.name == "CALL_COPY" and one.b == number for one in steps)
         #: The cells that calls pass, and those that have a value in every call.
         self._given = range(0 if self._is_copied else self._received)
@@ -268,7 +267,7 @@ class _Routine:
         for slot in self._slots:
             variable, type_ = slot.variable, self._program.types[slot.variable.type]
             for place in range(slot.cells):
-                is_value = not isinstance(variable, Parameter) or variable.mode is Mode.IN
+                is_value = variable.mode is Mode.IN
                 kind = _KINDS.get(kind_at(type_, place), "INT") if is_value else "INT"
                 yield slot.offset + place, kind
 

@@ -128,7 +128,7 @@ def test_requests_are_written_as_they_are_nested() -> None:
         (HEAD + BODY.format("  FAIL nothing"), 5, "no fault"),
         ('bytecode 4\ncode M routine "m" 1\nbegin\n', 3, "ends early"),
         ('bytecode 4\ncode M nothing "m" 1\n', 2, "a code object is"),
-        ("bytecode 4\nask A Read " + "(" * 20 + "\n", 2, "too deep"),
+        ("bytecode 4\nask A Read " + "(" * 70 + "\n", 2, "too deep"),
     ],
 )
 def test_what_is_no_program_is_refused(text: str, line: int, message: str) -> None:

@@ -15,6 +15,7 @@ from interp.bytecode.assembly.assembler import assemble
 from interp.bytecode.image.codec import ImageError
 from interp.bytecode.image.image import read_image, write_image
 from interp.bytecode.instruction_set.table import FORMAT
+from interp.bytecode.verifier.verify import VerificationError, verify
 
 SMALL = 'bytecode 4\nstruct S A:INT\ndata M.X S = 1\ncode M routine "m" 1\nbegin\n  RETURN\nend\n'
 
@@ -96,5 +97,5 @@ def test_names_of_types_differ() -> None:
     """Two structures of one name would have to be compared by all that they are made of."""
     image = write_image(assemble(SMALL.replace("data", "struct T A:INT\ndata")))
     start = image.index(b"SAT")  # the names, in the order in which they come
-    with pytest.raises(ImageError, match="two types S"):
-        read_image(sealed(image[:start] + b"SAS" + image[start + 3 :]))
+    with pytest.raises(VerificationError, match="S is defined twice"):
+        verify(read_image(sealed(image[:start] + b"SAS" + image[start + 3 :])))
