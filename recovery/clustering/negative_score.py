@@ -60,7 +60,8 @@ def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> Negativ
         for p in programs
     ]
 
-    def accepted(edits: Sequence[Edit]) -> frozenset[int]:
+    @cache
+    def accepted(edits: tuple[Edit, ...]) -> frozenset[int]:
         needed = {_needed(edit) for edit in edits if not isinstance(edit, AddToken)}
         having = (n for n, some in enumerate(tokens) if any(few <= some for few in needed))
         return trial.result(edits, having).mended
@@ -71,7 +72,7 @@ def negative_counter(grammar: Grammar, negatives: Iterable[Negative]) -> Negativ
         return failed is None or recognizer.line_kind in form.kinds[form.index : failed]
 
     def count_negatives(edits: Sequence[Edit], rivals: Rivals = ()) -> int:
-        own = accepted(edits)
+        own = accepted(tuple(edits))
         others = frozenset[int]().union(*map(accepted, rivals)) - own
         read = trial.failures(edits, others).items() if others else ()
         return len(own) + sum(is_read(number, failed) for number, failed in read)
