@@ -144,16 +144,18 @@ def _profile(root: Path, name: str) -> str:
     return name
 
 
-def _text(key: str, value: object) -> str:
-    if not isinstance(value, str):
-        raise ValueError(f"{key} must be a text")
-    return value
+def _of(kind: type[Any], what: str) -> Callable[[str, object], Any]:
+    """Return the function that reads a value of this kind."""
+
+    def read(key: str, value: object) -> Any:
+        if not isinstance(value, kind):
+            raise ValueError(f"{key} must be {what}")
+        return value
+
+    return read
 
 
-def _truth(key: str, value: object) -> bool:
-    if not isinstance(value, bool):
-        raise ValueError(f"{key} must be true or false")
-    return value
+_text, _truth, _table = _of(str, "a text"), _of(bool, "true or false"), _of(dict, "a table")
 
 
 def _texts(key: str, value: object) -> tuple[str, ...]:
@@ -185,12 +187,6 @@ def _severity(key: str, value: object) -> dict[str, _Level]:
 
 def _ignored_in(key: str, value: object) -> dict[str, tuple[str, ...]]:
     return {one: _codes(f"{key}: {one}", codes) for one, codes in _table(key, value).items()}
-
-
-def _table(key: str, value: object) -> Mapping[str, object]:
-    if not isinstance(value, dict):
-        raise ValueError(f"{key} must be a table")
-    return value
 
 
 #: For each key its field and the function that reads its value.

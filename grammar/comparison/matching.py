@@ -10,6 +10,7 @@ from itertools import groupby
 from typing import TypeVar
 
 _K = TypeVar("_K", bound=Hashable)
+_Counted = dict[_K, tuple[object, Counter[str]]]
 
 # Less similar items are not matched, because short routines always have much in common.
 _LEAST = 0.6
@@ -97,11 +98,11 @@ def likest(
     """
     left, right = _counted(old, kind), _counted(new, kind)
     same: dict[object, deque[_K]] = {}
-    for key, what in right.items():
-        same.setdefault(what, deque()).append(key)
-    for key, what in list(left.items()):
-        if same.get(what):
-            match = same[what].popleft()
+    for key, (what, lines) in right.items():
+        same.setdefault((what, frozenset(lines.items())), deque()).append(key)
+    for key, (what, lines) in list(left.items()):
+        if alike := same.get((what, frozenset(lines.items()))):
+            match = alike.popleft()
             del left[key], right[match]
             yield key, match
     if max(len(left), len(right)) > _MOST:
@@ -112,26 +113,15 @@ def likest(
             yield before, after
 
 
-def _counted(
-    things: Mapping[_K, Sequence[str]], kind: Callable[[_K], object]
-) -> dict[_K, tuple[object, frozenset[tuple[str, int]]]]:
+def _counted(things: Mapping[_K, Sequence[str]], kind: Callable[[_K], object]) -> _Counted[_K]:
     """Return the kind of each item and its multiset of lines; items without lines are left out."""
-    return {
-        key: (kind(key), frozenset(Counter(lines).items()))
-        for key, lines in things.items()
-        if lines
-    }
+    return {key: (kind(key), Counter(lines)) for key, lines in things.items() if lines}
 
 
-def _candidates(
-    old: Mapping[_K, tuple[object, frozenset[tuple[str, int]]]],
-    new: Mapping[_K, tuple[object, frozenset[tuple[str, int]]]],
-) -> list[tuple[float, _K, _K]]:
-    counts = {key: (kind, Counter(dict(lines))) for key, (kind, lines) in new.items()}
+def _candidates(old: _Counted[_K], new: _Counted[_K]) -> list[tuple[float, _K, _K]]:
     found = []
-    for before, (kind, lines) in old.items():
-        mine = Counter(dict(lines))
-        for after, (other, theirs) in counts.items():
+    for before, (kind, mine) in old.items():
+        for after, (other, theirs) in new.items():
             likeness = _likeness(mine, theirs) if kind == other else 0.0
             if likeness >= _LEAST:
                 found.append((likeness, before, after))

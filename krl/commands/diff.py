@@ -1,7 +1,6 @@
 """`krl diff`: compares two backups by routines, points and data."""
 
 import json
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
 from pathlib import Path
@@ -130,16 +129,14 @@ def _text(record: Record) -> Iterator[str]:
 
 
 def _files(record: Record) -> Iterator[str]:
+    from reports.programs.diff_view import moves
+
     files = record["files"]
     for kind in ("added", "removed"):
         yield from (f"file {kind}: {path}" for path in files[kind])
-    folders = Counter(tuple(one["folders"]) for one in files["moved"])
-    for (old, new), number in folders.items():
-        if number > 1:
-            yield f"{number:,} files moved: {old} -> {new}"
-    for one in files["moved"]:
-        if folders[tuple(one["folders"])] == 1:
-            yield f"file moved: {one['old']} -> {one['new']}"
+    for number, old, new in moves(files):
+        what = f"{number:,} files" if number > 1 else "file"
+        yield f"{what} moved: {old} -> {new}"
     yield from (f"name changed throughout: {one['old']} -> {one['new']}" for one in record["names"])
 
 

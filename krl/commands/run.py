@@ -85,7 +85,12 @@ def run(
         )
         is_shown = html is not None or video is not None or png is not None
         done = _performed(program, setup, trace, max_trace * 1_000_000, keeps_all=is_shown)
-        _write(done, program, setup, path, html)
+        if path is not None and done.path is not None:
+            _write_path(done.path.columns(), path)
+        if html is not None:
+            from reports.programs.run_page import write_run_page
+
+            write_run_page(_record(done, program, setup), html)
         if video is not None or png is not None:
             from krl.running.run_pictures import write_run_film, write_run_picture
 
@@ -207,21 +212,6 @@ def _tracing(file: Path | None, most: int) -> Iterator[_TraceWriter | None]:
         if ended is not None:
             say(f"trace: {file} ends where the run was interrupted", err=True)
             raise ended
-
-
-def _write(
-    done: "RunResult",
-    program: "CheckedProgram",
-    setup: "RunSetup",
-    path: Path | None,
-    html: Path | None,
-) -> None:
-    if path is not None and done.path is not None:
-        _write_path(done.path.columns(), path)
-    if html is not None:
-        from reports.programs.run_page import write_run_page
-
-        write_run_page(_record(done, program, setup), html)
 
 
 def _write_observations(done: "RunResult", target: Path) -> None:

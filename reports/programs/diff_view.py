@@ -58,14 +58,23 @@ def _figure(label: str, value: int, section: str, note: str = "") -> Figure:
 def _files(files: Record) -> Iterator[str]:
     yield from (f"{shown(path)} added" for path in texts(files, "added"))
     yield from (f"{shown(path)} removed" for path in texts(files, "removed"))
-    moved = [*records(files, "moved")]
+    for number, old, new in moves(files):
+        if number > 1:
+            yield f"{number:,} files of {shown(old)} are in {shown(new)} now"
+        else:
+            yield f"{shown(new)} was {shown(old)}"
+
+
+def moves(files: Record) -> Iterator[tuple[int, str, str]]:
+    """Yield number, old and new folder of files moved together; 1 and the paths for other files."""
+    moved = records(files, "moved")
     folders = Counter(tuple(texts(one, "folders")) for one in moved)
     for (old, new), number in folders.items():
         if number > 1:
-            yield f"{number:,} files of {shown(old)} are in {shown(new)} now"
+            yield number, old, new
     for one in moved:
         if folders[tuple(texts(one, "folders"))] == 1:
-            yield f"{shown(text(one, 'new'))} was {shown(text(one, 'old'))}"
+            yield 1, text(one, "old"), text(one, "new")
 
 
 # ---------------------------------------------------------------------------------------- routines

@@ -44,18 +44,21 @@ def text(record: Record, key: str) -> str:
 
 def texts(record: Record, key: str) -> list[str]:
     """Return the texts listed at ``key``; anything else in the list is left out."""
-    value = record.get(key)
-    if not isinstance(value, list | tuple):
-        return []
-    return [item for item in value if isinstance(item, str)]
+    return _listed(record, key, str)
 
 
 def records(record: Record, key: str) -> list[Record]:
     """Return the records listed at ``key``; anything else in the list is left out."""
+    return _listed(record, key, Mapping)
+
+
+def _listed(record: Record, key: str, kind: type[Any]) -> list[Any]:
     value = record.get(key)
-    if not isinstance(value, list | tuple):
-        return []
-    return [item for item in value if isinstance(item, Mapping)]
+    return (
+        [item for item in value if isinstance(item, kind)]
+        if isinstance(value, list | tuple)
+        else []
+    )
 
 
 def nested(record: Record, key: str) -> Record:
