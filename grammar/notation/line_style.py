@@ -8,7 +8,7 @@ which a line or a block of lines can be added, and blocks show what their bodies
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from itertools import count
 
 from grammar.notation.model import (
@@ -47,8 +47,8 @@ def with_rules_of_lines(grammar: Grammar) -> str:
     changed: dict[str, list[Splice]] = defaultdict(list)
     names: dict[str, str] = {}
     rows = [
-        (r, row, _line_rule(line), " ".join(map(r.source_of, (*line, end))))
-        for r, row, line, end in _rows(grammar)
+        (r, row, line, " ".join(r.source_of(row.item)[1:-1].split()))
+        for r, row, line, _ in _rows(grammar)
     ]
     for rule, row, line, text in rows:
         if text not in names:
@@ -78,30 +78,21 @@ def with_rules_of_lines(grammar: Grammar) -> str:
     return spliced(grammar, changed)
 
 
-def _rows(
-    grammar: Grammar,
-) -> Iterator[tuple[Rule, Repeat, tuple[Element, ...], Element]]:
-    """Yield the rows ``(x NL)*`` of a rule ``x`` or of what is written out in it.
+def _rows(grammar: Grammar) -> Iterator[tuple[Rule, Repeat, str, Element]]:
+    """Yield the rows ``(x NL)*`` of a rule ``x``, or of what is written out in it.
 
-    Each with its rule, the elements of a line, and the end of the line.
+    Each with its rule, ``x`` if it is a rule, else an empty text, and the end of a line.
     """
     for rule in grammar.parser_rules:
         for element in walk(rule):
             match element:
                 case Repeat(
-                    item=Group(alternatives=(Alternative(elements=(*line, end)),)),
+                    item=Group(alternatives=(Alternative(elements=(first, *more, end)),)),
                     operator="*" | "+",
                 ) if next((e for e in walk(element) if _is_end(grammar, e)), None) == end:
-                    if len(line) > 1 or _line_rule(line):
-                        yield rule, element, tuple(line), end
-
-
-def _line_rule(line: Sequence[Element]) -> str:
-    """Return the rule that a line is; empty if it is anything else."""
-    match line:
-        case (Reference(name=name, is_token=False),):
-            return name
-    return ""
+                    is_rule = isinstance(first, Reference) and not first.is_token and not more
+                    if more or is_rule:
+                        yield rule, element, rule.source_of(first) if is_rule else "", end
 
 
 def _has_lines(grammar: Grammar, rule: Rule) -> bool:

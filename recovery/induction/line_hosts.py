@@ -153,7 +153,8 @@ class LineHosts:
                 return frozenset({name})
             case Reference(name=name, is_token=False):
                 words = self.at.profile.vocabulary.words_of(name)
-                return words if all(map(self._is_reserved, words)) else frozenset()
+                kind_of, is_keyword = self.at.lexer.kind_of, self.at.lexer.is_keyword
+                return words if all(is_keyword(kind_of[w]) for w in words) else frozenset()
             case Group(alternatives=alternatives):
                 return frozenset(
                     w
@@ -165,7 +166,3 @@ class LineHosts:
                 return self.words_of(item)
             case _:
                 return frozenset()
-
-    def _is_reserved(self, word: str) -> bool:
-        lexer = self.at.lexer
-        return lexer.is_keyword(lexer.kind_of[word])

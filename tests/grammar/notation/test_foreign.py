@@ -47,10 +47,10 @@ def test_rows_of_lines_have_rules() -> None:
 
 def test_a_row_of_lines_that_are_written_out() -> None:
     """Its line is a rule of its own; a row without line ends stays as it is."""
-    rules = "s : ('if' NAME 'then' NL+)* ('x' ',' NAME)* ;"
+    rules = "s : (('if' | 'as') NAME 'then' NL+)* ('x' ',' NAME)* ;"
     grammar = read_foreign(f"grammar x;\n{rules}\n{_TOKENS}")
     assert "s : sLine* (X ',' NAME)* ;" == grammar.by_name["s"].text
-    assert [True, False] == _accepts(rules, "if a then\nx,b", "if a then x,b")
+    assert [True, False] == _accepts(rules, "if a then\nx,b", "as a then x,b")
 
 
 def test_a_row_that_is_a_line_of_another_row() -> None:
