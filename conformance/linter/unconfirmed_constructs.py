@@ -8,7 +8,7 @@ neither can decide is left out.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -46,9 +46,11 @@ _SPACES: Final = {"PTP": "older", "LIN": "older", "CIRC": "older", "SPTP": "axes
 _FORMS: Final = frozenset(
     {
         "CTL-09.b",
+        "FCT-12.d",
         "INT-06.c",
         "SCO-07.b",
         "SCO-13.d",
+        "SPL-01.b",
         "SPL-10",
         "TRG-10.e",
         "TRG-13.b",
@@ -149,13 +151,15 @@ def _of_motions(source: Source, tree: ast.Module) -> Iterator[Doubt]:
                 yield from _of_row(source, body)
 
 
-def _of_row(source: Source, body: Iterable[ast.Node]) -> Iterator[Doubt]:
+def _of_row(source: Source, body: Sequence[ast.Node]) -> Iterator[Doubt]:
     before: ast.Motion | ast.SplineBlock | None = None
     is_relative = False
     waiting: list[int] = []
-    for node in body:
+    for last, node in zip((None, *body), body, strict=False):
         line = source.place(node.span[0])[0]
         if isinstance(node, ast.Motion | ast.SplineBlock):
+            if isinstance(last, ast.OnErrorProceed) and source.place(last.span[0])[0] == line - 1:
+                yield Doubt(source.path, line, "FCT-12.d")
             if isinstance(before, ast.Motion) and before.criteria:
                 if _space(before) != _space(node):
                     there = source.place(before.span[0])[0]

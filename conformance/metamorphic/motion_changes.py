@@ -218,8 +218,7 @@ def _stopped(program: Program, _random: Random) -> Program | None:
     def change(node: ast.Node) -> ast.Node:
         return replace(node, criteria=()) if isinstance(node, ast.Motion) else node
 
-    modules = (program.modules or {}).items()
-    return program.written({path: rewritten(one, change) for path, one in modules})
+    return program.rewritten(lambda _routine: change)
 
 
 # ------------------------------------------------------------------------------------ lines
@@ -227,26 +226,19 @@ def _stopped(program: Program, _random: Random) -> Program | None:
 
 def _halved(program: Program, _random: Random) -> Program | None:
     """Replace each LIN between known points by two, with an exact stop in the middle."""
-    count = 0
 
     def change(node: ast.Node) -> ast.Node:
-        nonlocal count
-        body = getattr(node, "body", None)
-        if not isinstance(node, ast.Routine) or not isinstance(body, tuple):
+        if not isinstance(node, ast.Routine):
             return node
         new: list[ast.Statement] = []
-        before: ast.Statement | None = None
-        for one in body:
+        for before, one in zip((None, *node.body), node.body, strict=False):
             middle = _middle(before, one)
             if middle is not None and isinstance(one, ast.Motion):
-                count += 1
                 new.append(replace(one, target=middle, values=()))
             new.append(one)
-            before = one
-        return replace(node, body=tuple(new))
+        return node if len(new) == len(node.body) else replace(node, body=tuple(new))
 
-    changed = {path: rewritten(one, change) for path, one in (program.modules or {}).items()}
-    return program.written(changed) if count else None
+    return program.rewritten(lambda _routine: change)
 
 
 def _middle(before: ast.Statement | None, one: ast.Statement) -> ast.Aggregate | None:
