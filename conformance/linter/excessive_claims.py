@@ -14,6 +14,8 @@ from conformance.linter.unconfirmed_constructs import doubts
 from conformance.suite.case import Case
 from conformance.suite.expectations import Expectation, When
 from conformance.suite.registry import Clause, Rule, basis, registry
+from grammar.semantics.predefined import System
+from grammar.semantics.types import Structure
 
 #: For expectations with these beginnings, words of which the clause they rest on must have one.
 _CLAUSE_WORDS: Final = {
@@ -35,16 +37,16 @@ _ASKED: Final = re.compile(r"=.*\$ERR\.NUMBER", re.IGNORECASE)
 _CLEARED: Final = re.compile(
     r"\s*(ERR_CLEAR\b|ON_ERROR_PROCEED|\$ERR\.NUMBER *=|DEF)", re.IGNORECASE
 )
-#: ON_ERROR_PROCEED and the motion behind it, to which it may not apply [FCT-12.d].
-_UNHEEDED: Final = re.compile(
-    r"^ *ON_ERROR_PROCEED *(?:;.*)?\n *S?(?:PTP|LIN|CIRC|PTP_SPLINE|SPLINE)(?:_REL)?\b",
-    re.IGNORECASE | re.MULTILINE,
-)
-#: Forms that no clause has which may fail a case: a controller may refuse the whole program.
-_FORMS: Final = {
-    re.compile(r"^ *ENDSPLINE +C_", re.IGNORECASE | re.MULTILINE): "SPL-01.b alone has a criterion",
-    re.compile(r"\bDO\b[^(;\n]*=[^;\n]*\bPRIO\b", re.IGNORECASE): "only a call has a priority",
+#: Motions whose blend has a size by the component of $APO that gives it.
+_SIZED: Final = {
+    "CPTP": re.compile(r"\bC_PTP\b|^ *SPTP.*\bC_SPL\b", re.IGNORECASE | re.MULTILINE),
+    "CDIS": re.compile(r"\bC_(?:DIS|SPL)\b", re.IGNORECASE),
+    "CVEL": re.compile(r"\bC_VEL\b", re.IGNORECASE),
+    "CORI": re.compile(r"\bC_ORI\b", re.IGNORECASE),
 }
+#: The name of a structure, and a finding about a value of another type.
+_STRUCTURE: Final = re.compile(r"\bSTRUC +(\w+)", re.IGNORECASE)
+_OTHER_TYPE: Final = re.compile(r"(\w+) is expected here, and this is (\w+)$")
 #: A wait for some time.
 _TIMED: Final = re.compile(r"\bWAIT +SEC +0*\.?0*[1-9]", re.IGNORECASE)
 #: The syntax of message numbers in expectations, and in rules, as in "3214 to 3217".
@@ -59,7 +61,7 @@ def excessive_claims(case: Case) -> Iterator[str]:
     yield from _of_refused(case)
     yield from _of_recollection(case)
     yield from _of_periods(case)
-    yield from _of_forms(case)
+    yield from _of_sizes(case)
 
 
 def _of_clauses(case: Case) -> Iterator[str]:
@@ -101,18 +103,27 @@ def _of_refused(case: Case) -> Iterator[str]:
     """Yield that a program which the check refuses is expected to run: a controller refuses it.
 
     One that is only to be parsed, too. Machine data are written by the controller itself. What may
-    be told while the program runs has to be expected, or rest on what fails no case.
+    be told while the program runs has to be expected, or rest on what fails no case. That a
+    structure is no other one does not fail any [TYP-21].
     """
-    if case.phase == "check" or case.expects_syntax_error or not case.may_fail:
+    if case.expects_syntax_error or not case.may_fail:
         return
+    own = {name.upper() for name in _STRUCTURE.findall(_code_of(case))}
     for one in observe(replace(case, phase="check"), Setup(FRONT, "none")).findings:
+        said = case.said_of(one.file, one.line, behind=True)
+        is_hard = any(map(case.is_sure, said))
+        types = _OTHER_TYPE.match(one.message)
+        if types and is_hard and all(each in own or _is_structure(each) for each in types.groups()):
+            yield f"{one.file}:{one.line}: only TYP-21 says that a structure is no other one"
+        is_refused = one.severity == "error"
         if one.may_come_late(one.code):
-            said = case.said_of(one.file, one.line, behind=True)
-            is_refused = any(map(case.is_sure, said)) and not is_told_early(one, case)
-        else:
-            is_refused = one.severity == "error"
-        if is_refused and one.file.lower() != "$machine.dat":
+            is_refused = is_hard and not is_told_early(one, case)
+        if is_refused and case.phase != "check" and one.file.lower() != "$machine.dat":
             yield f"{one.file}:{one.line}: {one.code} refuses what a controller has to take"
+
+
+def _is_structure(name: str) -> bool:
+    return isinstance(System.load().types.get(name), Structure)
 
 
 def _of_recollection(case: Case) -> Iterator[str]:
@@ -133,18 +144,22 @@ def _of_periods(case: Case) -> Iterator[str]:
             yield f"{one.file}:{one.line}: a submit program has no period: WAIT FOR what it does"
 
 
-def _of_forms(case: Case) -> Iterator[str]:
-    """Yield forms of a hard case that its clauses cannot have."""
-    for source in case.sources if case.may_fail else ():
-        for form, why in _FORMS.items():
-            for found in form.finditer(source.text):
-                line = source.text.count("\n", 0, found.end()) + 1
-                yield f"{source.path}:{line}: {why}"
+def _of_sizes(case: Case) -> Iterator[str]:
+    """Yield a size of blends that a hard case uses as one controller has it [BLD-02.a]."""
+    code = _code_of(case)
+    for size, motion in _SIZED.items() if case.phase == "run" and case.may_fail else ():
+        is_set = re.search(rf"\$APO(?:\.{size})? *=", code, re.IGNORECASE)
+        if motion.search(code) and not is_set:
+            yield f"no rule gives the value of $APO.{size} that it does not set"
+
+
+def _code_of(case: Case) -> str:
+    return "\n".join(re.sub(";.*", "", each.text) for each in case.sources)
 
 
 def _messages_of(case: Case, one: Expectation) -> set[int]:
     """Return the message numbers that are expected, without those that the program itself has."""
-    code = "\n".join(re.sub(";.*", "", each.text) for each in case.sources)
+    code = _code_of(case)
     found = {int(each[1]) for word in one.arguments if (each := _MESSAGE.fullmatch(word))}
     if one.kind in ("value", "values") and "$ERR.NUMBER" in code.upper():
         found &= _known_messages()
@@ -169,14 +184,8 @@ def _numbers_in(statement: str) -> set[int]:
 
 
 def _of_errors(case: Case) -> Iterator[str]:
-    """Yield expectations of $ERR.NUMBER that an earlier fault has met already: it stays set.
-
-    Nor can a case that may fail ask for the fault of a motion, which ends the program.
-    """
+    """Yield expectations of $ERR.NUMBER that an earlier fault has met already: it stays set."""
     for source in case.sources:
-        if case.may_fail and (found := _UNHEEDED.search(source.text)):
-            number = source.text.count("\n", 0, found.end()) + 1
-            yield f"line {number}: ON_ERROR_PROCEED may not apply to a motion [FCT-12.d]"
         asked = 0
         for number, line in enumerate(source.text.splitlines(), start=1):
             if _CLEARED.match(line):
