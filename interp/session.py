@@ -270,7 +270,7 @@ def _tracking(
     start: Sequence[float],
     setup: RunSetup,
 ) -> Tracking | None:
-    """Who sends set-points, where there is somebody to take them."""
+    """Return who sends set-points, where there is somebody to take them."""
     if not robot.step and setup.scene is None:
         return None
     from interp.robot.simulation.tracking import Tracking
@@ -279,7 +279,7 @@ def _tracking(
 
 
 def _kinds(program: CheckedProgram, setup: RunSetup) -> frozenset[Kind]:
-    """Events that executors report; at least the calls that interrupts and $ERR need."""
+    """Return events that executors report; at least the calls that interrupts and $ERR need."""
     if setup.is_full:
         return EVERY_KIND
     return WORLD_KINDS if setup.is_traced else _needed_kinds(program)
@@ -317,7 +317,7 @@ def _needed_kinds(program: CheckedProgram) -> frozenset[Kind]:
 
 
 def _observer(machine: MachineData, setup: RunSetup) -> Observer | None:
-    """Who looks for contacts, where there is something to touch."""
+    """Return who looks for contacts, where there is something to touch."""
     if setup.scene is None and (setup.robot != "mujoco" or setup.make_robot is not None):
         return None
     from interp.robot.simulation.cell import Cell

@@ -80,7 +80,7 @@ def exchanged(found: Sequence[tuple[FunctionType, CodeType]]) -> Sequence[Callab
 
 
 def _different(old: CodeType, new: CodeType) -> Iterator[tuple[CodeType, CodeType]]:
-    """Pairs of code of the same function, from the outside in, that are not the same."""
+    """Yield pairs of code of the same function, from the outside in, that are not the same."""
     left = [one for one in new.co_consts if isinstance(one, CodeType)]
     for one in (one for one in old.co_consts if isinstance(one, CodeType)):
         name = one.co_qualname, one.co_firstlineno
@@ -96,7 +96,7 @@ def _different(old: CodeType, new: CodeType) -> Iterator[tuple[CodeType, CodeTyp
 
 
 def _key(code: CodeType) -> tuple[Any, ...]:
-    """Which function it is of; lambdas of a line are distinguished by their columns."""
+    """Return which function it is of; lambdas of a line are distinguished by their columns."""
     columns = tuple(column for _, _, column, _ in code.co_positions())
     return code.co_filename, code.co_qualname, code.co_firstlineno, columns
 

@@ -68,7 +68,7 @@ class Token:
 def damaged(
     kind: str, source: Source, lines: Sequence[Sequence[Token]], chance: random.Random
 ) -> Exchange | None:
-    """Damage of a kind in a text of these ``lines``, at a place drawn by chance.
+    """Return damage of a kind in a text of these ``lines``, at a place drawn by chance.
 
     ``None`` where the line that is drawn has no place for it.
     """
@@ -93,7 +93,7 @@ def damaged(
 
 
 def slip(kind: str, tokens: Sequence[Token], chance: random.Random) -> Exchange | None:
-    """Damage of a kind in a line; ``None`` where it has no place for it."""
+    """Return damage of a kind in a line; ``None`` where it has no place for it."""
     match kind:
         case "name misspelt":
             return _misspelt([t for t in tokens if t.kind == "NAME" and len(t.text) > 3], chance)

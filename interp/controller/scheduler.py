@@ -264,7 +264,7 @@ class Scheduler:
         return max(-(-(end - first) // clock.cycle), int(begins))
 
     def _answer(self, task: Task, request: Request) -> Answer:
-        """The answer to a request; one too many in a slice waits for the next slice."""
+        """Return the answer to a request; one too many in a slice waits for the next slice."""
         task.at = request.at
         match request:
             case End():

@@ -418,7 +418,7 @@ class _Making:
 
 
 def _ambiguous(uses: Uses) -> Iterator[tuple[str, str]]:
-    """Variables by file and name whose files cannot mean one and the same by that name.
+    """Yield variables by file and name whose files cannot mean one and the same by that name.
 
     Such files use it as of different types, or ask it for different numbers while none assigns it.
     """

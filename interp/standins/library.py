@@ -78,7 +78,7 @@ def load_library() -> Library:
 
 
 def _of_packages() -> str:
-    """Types and variables of option packages as a data list; a default for each type."""
+    """Return types and variables of option packages as a data list; a default for each type."""
     packages = load_packages()
     lines = [one.declaration for one in packages.types.values()]
     lines += [

@@ -17,7 +17,7 @@ from krl.errors import FINE, InputError, one_line, say
 from krl.terminal.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
 from krl.terminal.output_files import check_targets, write_json
 from krl.terminal.progress import progress_bar
-from krl.terminal.survey_summary import share
+from krl.terminal.survey_summary import percentage
 from reports.rendering.number_format import counted
 
 if TYPE_CHECKING:
@@ -83,8 +83,8 @@ def _print(record: "GrowthRecord", page: Path) -> None:
         f"{counted(record['files'], 'file')}, {record['bytes'] / 1e6:.2f} MB; "
         f"{counted(len(steps) - 1, 'construct')}; "
         f"parsed {first['parsed']:,} at the start, {last['parsed']:,} at the end "
-        f"({share(last['parsed'], last['files'])} of files, "
-        f"{share(last['parsed_bytes'], last['bytes'])} of bytes); {record['seconds']:.1f} s"
+        f"({percentage(last['parsed'], last['files'])} of files, "
+        f"{percentage(last['parsed_bytes'], last['bytes'])} of bytes); {record['seconds']:.1f} s"
     )
     console.print(_table(steps))
     ambiguous, look = record["ambiguous"], record["lookahead"]
@@ -126,8 +126,8 @@ def _table(steps: "Sequence[StepRecord]") -> Table:
             Text(one_line(step["title"])),
             ", ".join(step["grounds"]),
             f"{step['restored']:,}{broken}" if number else "",
-            share(step["parsed"], step["files"]),
-            share(step["parsed_bytes"], step["bytes"]),
+            percentage(step["parsed"], step["files"]),
+            percentage(step["parsed_bytes"], step["bytes"]),
             f"{step['failing_lines']:,}",
         )
     return table

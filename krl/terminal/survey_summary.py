@@ -27,8 +27,9 @@ def print_survey(record: "SurveyRecord", page: Path) -> None:
     files, parsed = record["files"], record["parsed"]
     say(
         f"{counted(files, 'file')}, {record['bytes'] / 1e6:.2f} MB; parsed {parsed:,} "
-        f"({share(parsed, files)} of files, {share(record['parsed_bytes'], record['bytes'])} "
-        f"of bytes); skipped {len(record['skipped']):,}; surveyed in {record['seconds']:.1f} s"
+        f"({percentage(parsed, files)} of files, "
+        f"{percentage(record['parsed_bytes'], record['bytes'])} of bytes); "
+        f"skipped {len(record['skipped']):,}; surveyed in {record['seconds']:.1f} s"
     )
     for skipped in record["skipped"][:_SKIPPED]:
         console.print(
@@ -55,7 +56,7 @@ def print_survey(record: "SurveyRecord", page: Path) -> None:
     say(f"Page: {one_line(str(page))}")
 
 
-def share(part: float, whole: float) -> str:
+def percentage(part: float, whole: float) -> str:
     """Return a percentage, rounded down, so that all but one is never shown as 100 %."""
     return f"{math.floor(1000 * part / whole) / 10:.1f} %" if whole else "–"
 
@@ -89,7 +90,7 @@ def _advice(record: "SurveyRecord") -> str:
         if step["parsed"] >= 0.95 * files:
             return (
                 f"Mending {number} of {counted(len(record['clusters']), 'cluster')} lets "
-                f"{share(step['parsed'], files)} of the files parse."
+                f"{percentage(step['parsed'], files)} of the files parse."
             )
     return ""
 

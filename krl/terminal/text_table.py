@@ -31,6 +31,6 @@ def print_columns(*rows: Sequence[str]) -> None:
         typer.echo(f"  {'  '.join(cells)}".rstrip())
 
 
-def plain(figure: float | None, form: str = "{:g}") -> str:
+def or_dash(figure: float | None, form: str = "{:g}") -> str:
     """Return a figure in a form, with few digits by default, or a dash if there is none."""
     return "–" if figure is None else form.format(figure)

@@ -93,7 +93,7 @@ def _users(grammar: Grammar, name: str) -> list[tuple[str, tuple[int, ...], int]
 
 
 def _removals(grammar: Grammar, name: str) -> list[Edit] | None:
-    """Edits that take out every alternative or optional part that needs a rule or token."""
+    """Return edits that take out every alternative or optional part that needs a rule or token."""
     edits: list[Edit] = []
     gone: set[tuple[str, int]] = set()
     for rule, address, place in _users(grammar, name):
@@ -136,7 +136,7 @@ def _without_rule(grammar: Grammar, name: str) -> list[Edit] | None:
 
 
 def _without_keywords(grammar: Grammar) -> Iterator[DamagedGrammar]:
-    """Grammars that do not know a keyword: it reads as a name, and what needs it is gone."""
+    """Yield grammars that do not know a keyword: it reads as a name, and what needs it is gone."""
     for rule in grammar.rules:
         if not rule.is_lexer or rule.is_fragment or not rule.text.startswith(f"{rule.name} : '"):
             continue
@@ -152,7 +152,7 @@ def _without_keywords(grammar: Grammar) -> Iterator[DamagedGrammar]:
 def combined(
     singles: Sequence[DamagedGrammar], grammar: Grammar, count: int, seed: int
 ) -> list[DamagedGrammar]:
-    """Grammars with two or three things taken out, of different rules."""
+    """Return grammars with two or three things taken out, of different rules."""
     chance = random.Random(seed)
     out: list[DamagedGrammar] = []
     for _ in range(count * 20):

@@ -136,7 +136,7 @@ def assess(damaged: DamagedGrammar, material: BenchMaterial) -> Assessment:
 
 
 def _proposals(clusters: Clusters) -> Iterator[tuple[Edit, ...]]:
-    """Proposals in the order of the page."""
+    """Yield proposals in the order of the page."""
     for entry in clusters.ranked[:_CLUSTERS_LOOKED_AT]:
         for proposal in entry.proposals:
             yield proposal.edits
@@ -188,7 +188,7 @@ def _adjacent(here: Address, there: Address) -> bool:
 
 
 def _repaired_together(base: Recognizer, clusters: Clusters, texts: Sequence[str]) -> int | None:
-    """How far down one has to look in each cluster; see `assess`."""
+    """Return how far down one has to look in each cluster; see `assess`."""
     best = [entry.proposals[0].edits for entry in clusters.ranked if entry.proposals]
     if _reads_all(_with_all(base, best), texts):
         return 1
@@ -213,7 +213,7 @@ def _repaired_together(base: Recognizer, clusters: Clusters, texts: Sequence[str
 
 
 def _telling(texts: Sequence[str]) -> list[str]:
-    """Texts to tell edits apart by: the short ones, which have few causes each to fail."""
+    """Return texts to tell edits apart by: the short ones, which have few causes each to fail."""
     return sorted(set(texts), key=lambda text: (len(text), text))[:_TEXTS_COMPARED]
 
 
@@ -253,7 +253,7 @@ def covering(grammar: Grammar) -> list[str]:
 def material_for(
     grammar: Grammar, roots: Sequence[Path], negatives: Sequence[Negative], seed: int
 ) -> BenchMaterial:
-    """Programs below ``roots``, half of them shown to the tool and half held out.
+    """Return programs below ``roots``, half of them shown to the tool and half held out.
 
     Programs that the grammar does not read are left out. The shortest programs through every part
     of the grammar are shown too, so that every part is used. Raises

@@ -138,7 +138,7 @@ class OperandRules:
         return max(self.ladder, key=count, default=None)
 
     def alone(self, name: str) -> Iterator[str]:
-        """Rules that a rule may consist of, nothing beside them."""
+        """Yield rules that a rule may consist of, nothing beside them."""
         for alternative in self.grammar.by_name[name].alternatives:
             needed = [e for e in alternative.elements if not is_optional(e)]
             if len(needed) == 1 and isinstance(needed[0], Reference) and not needed[0].is_token:
@@ -164,7 +164,7 @@ class OperandRules:
         return {name: frozenset(reached(alone, name)) for name in alone}
 
     def including(self, rule: str) -> frozenset[str]:
-        """Rules that may consist of a rule, itself too."""
+        """Return rules that may consist of a rule, itself too."""
         return frozenset(name for name in self._called if self.includes(name, rule))
 
     @cached_property
@@ -275,7 +275,7 @@ def is_optional(element: Element) -> bool:
 
 
 def bracket_pairs(sequence: Alternative) -> list[tuple[str, int, int]]:
-    """Pairs of brackets that a sequence writes: the opening one, and the indices of both."""
+    """Return pairs of brackets that a sequence writes: the opening one, and the indices of both."""
     out = []
     elements = sequence.elements
     for start, element in enumerate(elements):

@@ -31,7 +31,7 @@ class BlockEdits:
         self.blocks = blocks
 
     def edits(self) -> Iterator[InferredStep]:
-        """Blocks of several lines where their first line may stand."""
+        """Yield blocks of several lines where their first line may stand."""
         for block in self.blocks:
             members = self._opening(block)
             for host in self._hosts_of_block(block):

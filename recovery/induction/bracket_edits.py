@@ -57,7 +57,7 @@ class BracketEdits:
     def _between(
         self, rule: str, sign: str, contents: dict[tuple[Symbol, ...], list[int]]
     ) -> Iterator[tuple[Edit, ...]]:
-        """Edits for contents of brackets: parts left out, then new forms."""
+        """Yield edits for contents of brackets: parts left out, then new forms."""
         source_of = self.at.grammar.by_name[rule].source_of
         # operands are everywhere: one of several origins shows too little
         least = SEVERAL_ORIGINS if rule in self.at.rules.bracketed.values() else 1
@@ -81,7 +81,7 @@ class BracketEdits:
         contents: dict[tuple[Symbol, ...], list[int]],
         least: int,
     ) -> Iterator[tuple[Edit, ...]]:
-        """Edits of the rule that reads the items of a list and nothing else."""
+        """Yield edits of the rule that reads the items of a list and nothing else."""
         called = {e.name for o in old for e in walk(o) if isinstance(e, Reference)}
         for name in sorted(called & self.at.rules.reaches.keys()):
             first, *others = self.at.grammar.by_name[name].alternatives

@@ -24,7 +24,7 @@ from recovery.tuning import RULE_SYMBOLS
 
 
 def unused_rules(view: GrammarView) -> Iterator[InferredStep]:
-    """Rules that nothing calls."""
+    """Yield rules that nothing calls."""
     for name in view.rules.reaches:
         if view.profile.is_free(name):
             yield InferredStep(f"nothing calls {name}", (RemoveRule(name),), ())
@@ -54,7 +54,7 @@ def alternatives_of_two_rules(view: GrammarView) -> Iterator[InferredStep]:
 
 
 def lists(view: GrammarView) -> Iterator[InferredStep]:
-    """Lists where the same word begins one in another rule."""
+    """Yield lists where the same word begins one in another rule."""
     listing = {
         (rule, number): any(isinstance(e, Literal) and e.text == "," for e in walk(alternative))
         for rule, _, numbers in view.families

@@ -71,7 +71,7 @@ def trailing(view: GrammarView) -> Iterator[InferredStep]:
 
 
 def signs(view: GrammarView) -> Iterator[InferredStep]:
-    """Signs ahead of an operand, where another sign of the same level between operands is."""
+    """Yield signs ahead of an operand, where another sign of the same level between operands is."""
     alike: dict[str, frozenset[str]] = {}
     levels = [a for r in view.rules.ladder for a in view.grammar.by_name[r].alternatives]
     for element in (e for alternative in levels for e in walk(alternative)):

@@ -102,7 +102,7 @@ class _Uses:
 def names_read(
     files: Sequence[CorpusFile], failures: Sequence[Sequence[Failure]], lexer: Lexer
 ) -> dict[str, set[str]]:
-    """Words that are names in lines that can be read, with the origins of these."""
+    """Return words that are names in lines that can be read, with the origins of these."""
     read: dict[str, set[str]] = defaultdict(set)
     for file, of_file in zip(files, failures, strict=True):
         failing = {failure.line for failure in of_file}

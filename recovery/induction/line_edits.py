@@ -40,7 +40,7 @@ class LineEdits:
         self.symbols = [at.known_groups(symbols) for symbols in at.symbols]
 
     def edits(self) -> Iterator[InferredStep]:
-        """Blank lines, kinds of line where another one is expected, then forms of lines."""
+        """Yield blank lines, kinds of line where another one is expected, then forms of lines."""
         yield from self._blank_lines()
         yield from self._line_rules()
         yield from self._statements()
@@ -88,7 +88,7 @@ class LineEdits:
             )
 
     def _statements(self) -> Iterator[InferredStep]:
-        """Forms of lines by their first word, or first sign where they begin with a name."""
+        """Yield forms of lines by their first word, or first sign where they begin with a name."""
         groups: dict[tuple[tuple[str, ...], str], list[int]] = defaultdict(list)
         for number, symbols in enumerate(self.symbols):
             if not symbols or self._opened_in_group(number):

@@ -70,7 +70,7 @@ class LineHosts:
         return called <= self.at.rules.within_lines
 
     def of(self, number: int) -> tuple[str, ...]:
-        """Rules that a line could be where it begins, those that end with a line end last.
+        """Return rules that a line could be where it begins, those that end with a line end last.
 
         Where all alternatives of a rule are blocks, no line alone is another one.
         """
@@ -87,7 +87,7 @@ class LineHosts:
         return f" {profile.line_end}" if profile.closing(host) else ""
 
     def entered(self, number: int) -> frozenset[str]:
-        """Rules that may begin where a line does."""
+        """Return rules that may begin where a line does."""
         recognizer = self.at.recognizer
         return recognizer.entered(recognizer.restore(self.at.lines[number].form.before))
 

@@ -80,7 +80,7 @@ def has_blank(element: Element) -> bool:
 
 
 def _touching(line: str, lexer: Lexer) -> Iterable[tuple[str, str]]:
-    """Literals that are cut apart, with the token that their beginning was taken for."""
+    """Yield literals that are cut apart, with the token that their beginning was taken for."""
     lexemes = lexer.lexemes(line)
     kinds = [lexer.kinds[lexeme] for lexeme in lexemes]
     name = lexer.name_kind

@@ -46,7 +46,7 @@ class OperandEdits:
         yield from self._brackets_behind_names()
 
     def _between_operands(self) -> Iterator[InferredStep]:
-        """Words and signs between two operands or ahead of one, at each level there is."""
+        """Yield words and signs between two operands or ahead of one, at each level there is."""
         infix: dict[str, list[int]] = defaultdict(list)
         prefix: dict[str, list[int]] = defaultdict(list)
         for number, tokens, index in self.at.failures:

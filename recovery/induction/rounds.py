@@ -146,7 +146,7 @@ class Induction:
         self._waiting: set[LinePattern] = set()  # lines that wait for more evidence on operands
 
     def rounds(self, most: int = 80) -> Iterator[Round]:
-        """Up to ``most`` rounds; ``is_finished`` once nothing more is worth taking."""
+        """Yield up to ``most`` rounds; ``is_finished`` once nothing more is worth taking."""
         # what recurs in one origin only comes later, then what recurs in one file only, last a line
         trusts = dict.fromkeys([(self.least_origins, LEAST_FILES_ALONE), (1, LEAST_FILES_ALONE)])
         stages = [(step, least) for least in (*trusts, (1, 1), _LINE) for step in _STEPS]

@@ -109,5 +109,5 @@ def _parsed(reader: Recognizer, files: Sequence[CorpusFile]) -> Share:
 
 
 def _neighbours(reference: Recognizer, file: CorpusFile) -> frozenset[tuple[int, int]]:
-    """Pairs of kinds of token that stand side by side in a file."""
+    """Return pairs of kinds of token that stand side by side in a file."""
     return frozenset(pairwise(reference.kinds(file.text)))

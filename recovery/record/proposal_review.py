@@ -67,7 +67,7 @@ class Reviewer:
         return "\n".join(lines)
 
     def _restores(self, wider: Recognizer | None, files: Sequence[SurveyedFile]) -> int:
-        """Files that really parse with the proposal alone: they are read again."""
+        """Return files that really parse with the proposal alone: they are read again."""
         if wider is None:
             return 0
         return sum(len(f.places) for f in files if wider.accepts("\n".join(f.lines())))
@@ -91,7 +91,7 @@ class Reviewer:
         return count
 
     def _breaks(self, wider: Recognizer | None, proposal: Proposal) -> int:
-        """Files that parse now and would not: only a newly reserved word can do that."""
+        """Return files that parse now and would not: only a newly reserved word can do that."""
         words = _reserved(proposal)
         if not words:
             return 0

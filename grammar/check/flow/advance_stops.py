@@ -29,7 +29,7 @@ _MOTIONS = ast.Motion | ast.SplineBlock | ast.EmilyMotion
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Notes about all routines of a file; submit programs have no advance run."""
+    """Yield notes about all routines of a file; submit programs have no advance run."""
     if context.module.suffix == ".sub":
         return
     for routine in context.routines:
@@ -199,7 +199,7 @@ class _Routine:
     # -------------------------------------------------------------------- CONTINUE, $ADVANCE
 
     def _lost_continues(self) -> Iterator[Diagnostic]:
-        """CONTINUE before a blank line or a comment."""
+        """Yield CONTINUE before a blank line or a comment."""
         source = self._context.source
         for node in self._continues:
             following = self._context.line(node) + 1
@@ -210,7 +210,7 @@ class _Routine:
                 yield self._context.finding("continue-lost", node, message)
 
     def _without_advance(self) -> Iterator[Diagnostic]:
-        """Approximated motions that $ADVANCE=0 leads to."""
+        """Yield approximated motions that $ADVANCE=0 leads to."""
         steps = [step for step, _, _ in self._ways.steps]
         advances = {step: _advance(self._context, step.statement) for step in steps}
         todo = [step for step, value in advances.items() if value == 0]

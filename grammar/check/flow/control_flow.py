@@ -19,7 +19,7 @@ _LOOPS = frozenset({ast.For, ast.While, ast.Repeat, ast.Loop})
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Findings about the control flow of all routines of a file."""
+    """Yield findings about the control flow of all routines of a file."""
     labels = [_labels(routine) for routine in context.routines]
     homes: dict[str, list[str]] = {}
     for routine, own in zip(context.routines, labels, strict=True):
@@ -80,7 +80,7 @@ def _label_twice(context: Context, own: _Labels) -> Iterator[Diagnostic]:
 def _gotos(
     context: Context, routine: RoutineBody, own: _Labels, homes: Mapping[str, Sequence[str]]
 ) -> Iterator[Diagnostic]:
-    """Jumps that lead nowhere or into a block; ``homes`` has the routines of each label."""
+    """Yield jumps that lead nowhere or into a block; ``homes`` has the routines of each label."""
     guesses = _MOST_GUESSES
     slips = {} if context.is_cut(routine) else _slipped(context, routine, own, homes)
     for wanted, name in slips.items():

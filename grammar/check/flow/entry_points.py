@@ -26,7 +26,7 @@ _FARTHEST_LOOK = 2_000
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Findings about BRAKE, RESUME and first motions."""
+    """Yield findings about BRAKE, RESUME and first motions."""
     if not context.routines:
         return
     suspects = [routine for routine in context.routines if _interrupting(routine)]

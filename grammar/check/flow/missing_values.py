@@ -32,13 +32,13 @@ class _OnCondition:
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Findings about missing values in all routines of a file."""
+    """Yield findings about missing values in all routines of a file."""
     for routine in context.routines:
         yield from _read_too_early(context, routine)
 
 
 def _read_too_early(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    """Variables that are read where they cannot have a value yet [SCO-03, SCO-08]."""
+    """Yield variables that are read where they cannot have a value yet [SCO-03, SCO-08]."""
     flow = data_flow(context, routine)
     reported: set[str] = set()
     for access in flow.early(flow.variables):

@@ -20,7 +20,7 @@ from grammar.syntax.walk import root_variable, walk, without_parentheses
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Findings about suspicious statements in all routines of a file."""
+    """Yield findings about suspicious statements in all routines of a file."""
     for routine in context.routines:
         yield from _counters(context, routine)
         before: ast.Node | None = None
@@ -36,7 +36,7 @@ def check(context: Context) -> Iterator[Diagnostic]:
 
 
 def _counters(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    """Counters that are changed inside their own loop [CTL-05]."""
+    """Yield counters that are changed inside their own loop [CTL-05]."""
     for placed in routine.statements:
         statement = placed.statement
         if isinstance(statement, ast.For):

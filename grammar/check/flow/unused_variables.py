@@ -15,13 +15,13 @@ from grammar.syntax.references import Space
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Findings about unused variables in all routines of a file."""
+    """Yield findings about unused variables in all routines of a file."""
     for routine in context.routines:
         yield from _unused(context, routine)
 
 
 def _unused(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
-    """Variables and parameters that nothing reads; notes.
+    """Yield variables and parameters that nothing reads; notes.
 
     What is one slip away from a name of another file that the routine uses is a warning.
     """

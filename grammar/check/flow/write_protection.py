@@ -13,7 +13,7 @@ from grammar.syntax import ast
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Findings about what the statements of routines write."""
+    """Yield findings about what the statements of routines write."""
     for routine in context.routines:
         for placed in routine.statements:
             node: ast.Node | None = placed.statement

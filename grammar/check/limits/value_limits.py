@@ -24,7 +24,7 @@ _STOP_MESSAGE = "$STOPMESS"
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Findings about values outside their limits."""
+    """Yield findings about values outside their limits."""
     for routine in context.routines:
         for placed in routine.statements:
             match placed.statement:

@@ -160,7 +160,7 @@ def _below(root: Path) -> Iterator[FoundFile | Skipped]:
 
 
 def _reported(result: ProjectResult, names: Mapping[str, str]) -> ProjectResult:
-    """What is to be said of a project: that of the files with a name, under that."""
+    """Return what is to be said of a project: that of the files with a name, under that."""
     return replace(
         result,
         diagnostics=tuple(
@@ -300,7 +300,7 @@ def _address(found: FoundFile | Skipped) -> str:
 
 
 def _shares(contents: Mapping[int, Content], count: int) -> list[dict[int, Content]]:
-    """Files in shares of about the same size."""
+    """Return files in shares of about the same size."""
     shares: list[dict[int, Content]] = [{} for _ in range(count)]
     sizes = [0] * count
     for index, content in sorted(contents.items(), key=lambda item: -len(item[1].data)):

@@ -378,6 +378,6 @@ def _checked(project: Project, module: Module, tree: _Tree, options: CheckOption
 
 
 def _lines(source: Source, numbers: Iterable[int]) -> dict[int, str]:
-    """Source lines to show with findings."""
+    """Return source lines to show with findings."""
     lines = {number: source.line(number) for number in numbers}
     return {number: line for number, line in lines.items() if len(line) <= _LONGEST_LINE}

@@ -20,7 +20,7 @@ _WORKSPACES = frozenset({"WSPACEGIVE", "WSPACETAKE"})
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Findings about the places of declarations and statements."""
+    """Yield findings about the places of declarations and statements."""
     interrupts = _interrupt_routines(context)
     for routine in context.routines:
         yield from _declarations(context, routine)

@@ -11,7 +11,7 @@ from grammar.syntax import ast
 
 
 def check(context: Context) -> Iterator[Diagnostic]:
-    """Findings about spline blocks and spline motions."""
+    """Yield findings about spline blocks and spline motions."""
     for routine in context.routines:
         for placed in routine.statements:
             match placed.statement:

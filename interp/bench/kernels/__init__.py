@@ -31,7 +31,7 @@ class Kernel:
             return data.decode("latin-1")
 
     def beside(self, ending: str) -> Path | None:
-        """The same in another language, if it is there."""
+        """Return the same in another language, if it is there."""
         file = self.file.with_suffix(ending)
         return file if file.is_file() else None
 

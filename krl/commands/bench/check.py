@@ -8,7 +8,7 @@ from krl.commands.bench.bench_command import Record, bench, print_phases
 from krl.errors import as_input_errors, say
 from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import plain, print_figures
+from krl.terminal.text_table import or_dash, print_figures
 from reports.rendering.number_format import counted
 from support.measure.speed import MB
 
@@ -48,7 +48,7 @@ def _print_speed(record: Record) -> None:
         [
             ("first check", f"{record['s_per_mb']:.2f} s/MB", "1 s/MB"),
             ("nothing changed", f"{record['unchanged_s_per_mb']:.3f} s/MB", ""),
-            ("one file changed", plain(record["one_changed_seconds"], "{:.2f} s"), "0.3 s"),
+            ("one file changed", or_dash(record["one_changed_seconds"], "{:.2f} s"), "0.3 s"),
         ],
     )
     print_phases(record)
@@ -62,9 +62,9 @@ def _print_planted(planted: Record) -> None:
         if rows:
             print_figures(
                 (title, "planted", "found", "in place", "findings, median", "p95", "most"),
-                [(row["kind"], *(plain(row[n]) for n in _PLANTED_FIGURES)) for row in rows],
+                [(row["kind"], *(or_dash(row[n]) for n in _PLANTED_FIGURES)) for row in rows],
             )
-    say(f"findings each in the median file: {plain(planted['median_file'])}")
+    say(f"findings each in the median file: {or_dash(planted['median_file'])}")
     before = planted["unplanted"]
     print_figures(
         ("before planting", "findings", "per 1,000 lines", "for what is missing"),

@@ -9,7 +9,7 @@ from krl.commands.bench.bench_command import Record, bench
 from krl.errors import as_input_errors
 from krl.terminal.options import JobsOption, JsonOption, all_cores, negatives_or_ours
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import plain, print_figures
+from krl.terminal.text_table import or_dash, print_figures
 
 _PROGRAMS = Path("corpus", "programs")
 _AIMS = (
@@ -29,10 +29,10 @@ _AIMS = (
 
 
 def _print(record: Record) -> None:
-    rows = [(name, aim, plain(record[name])) for name, aim in _AIMS]
+    rows = [(name, aim, or_dash(record[name])) for name, aim in _AIMS]
     print_figures(("figure", "aim", "reached"), rows)
     shown = ("mutants", "detected", "rule_top1", "item_top1", "repair_top1", "repair_top5")
-    rows = [(kind, *(plain(row[n]) for n in shown)) for kind, row in record["by_kind"].items()]
+    rows = [(kind, *(or_dash(row[n]) for n in shown)) for kind, row in record["by_kind"].items()]
     print_figures(("taken out", *(n.replace("_top", " ") for n in shown)), rows)
 
 

@@ -4,7 +4,7 @@ from krl.commands.bench.bench_command import Record, bench, print_phases
 from krl.errors import as_input_errors, say
 from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import plain, print_figures
+from krl.terminal.text_table import or_dash, print_figures
 from reports.rendering.number_format import counted
 from support.measure.speed import MB
 
@@ -23,7 +23,7 @@ def _print(record: Record) -> None:
             ("accept or reject, cold", f"{_in_mb(record['recognise_bytes_per_s'])} MB/s", ""),
             (
                 "against ANTLR's Python runtime",
-                plain(record["ratio_vs_antlr_python"], times),
+                or_dash(record["ratio_vs_antlr_python"], times),
                 "20 times",
             ),
             ("nothing changed", f"{record['unchanged_s_per_mb']:.3f} s/MB", "0.1 s/MB"),
@@ -41,7 +41,7 @@ def _print(record: Record) -> None:
                 f"{side['tokens']:,}",
                 _in_mb(side["antlr_bytes_per_s"]),
                 _in_mb(side["our_bytes_per_s"]),
-                plain(side["ratio"], times),
+                or_dash(side["ratio"], times),
             )
             for label, name in sides.items()
             for side in [record["antlr"][name]]

@@ -14,7 +14,7 @@ from krl.commands.bench.bench_command import Record, bench
 from krl.errors import InputError, as_input_errors, say
 from krl.terminal.options import JsonOption
 from krl.terminal.progress import progress_bar
-from krl.terminal.text_table import plain, print_figures
+from krl.terminal.text_table import or_dash, print_figures
 
 _HEADINGS = {
     "tree": "tree",
@@ -52,7 +52,7 @@ def _print(record: Record) -> None:
     for heading in ("geometric mean", "", "aim"):
         summary.add_column(heading, justify="right" if heading == "" else "left", no_wrap=True)
     for key, label, aim in _AIMS:
-        summary.add_row(label, plain(record[key], "{:,.2f} times"), aim)
+        summary.add_row(label, or_dash(record[key], "{:,.2f} times"), aim)
     for name, costs in record["request_us"].items():
         listed = ", ".join(f"{cost:.1f} µs to {kind}" for kind, cost in costs.items())
         summary.add_row(f"a request: {_HEADINGS[name]}", listed, "")
