@@ -220,12 +220,14 @@ def constant(type_: Enumeration, name: str) -> EnumValue:
 def position_type(names: frozenset[str]) -> Structure | None:
     """Return the smallest pose type, else the smallest axis type, with all these components.
 
-    This is the type of ``{X 1,Y 2}`` if the context gives none. Return ``None`` if no type fits.
+    This is the type of ``{X 1,Y 2}`` if the context gives none. The names are in upper case. Return
+    ``None`` if no type fits.
     """
     types = System.load().types
     for name in ("FRAME", "POS", "E3POS", "E6POS", "AXIS", "E3AXIS", "E6AXIS"):
         type_ = types[name]
-        if isinstance(type_, Structure) and {one.upper() for one in names} <= set(_places(type_)):
+        assert isinstance(type_, Structure), "as all positions"
+        if names <= _places(type_).keys():
             return type_
     return None
 
