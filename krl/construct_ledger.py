@@ -1,13 +1,12 @@
 """Shared by the commands about constructs: paths, errors, output."""
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
-from krl.errors import as_input_errors, one_line, say
+from krl.errors import one_line, say
 
 if TYPE_CHECKING:
     from recovery.ledger.evaluation import Evaluation
@@ -24,28 +23,6 @@ def checkout_or_packaged(path: Path) -> Path:
     from grammar.notation.generate import GRAMMAR as OURS
 
     return path if path.parent.is_dir() else OURS.parent / path.relative_to("grammar")
-
-
-@contextmanager
-def expected_errors() -> Iterator[None]:
-    """Raise exceptions of the packages below about input as `InputError`."""
-    from grammar.notation.generate import GenerationError
-    from grammar.notation.model import GrammarError
-    from recovery.ledger.construct import LedgerError
-    from recovery.negatives.negatives import NegativeError
-    from support.files.discovery import IngestError
-    from support.parallel.workers import WorkersError
-
-    expected = (
-        GrammarError,
-        GenerationError,
-        LedgerError,
-        IngestError,
-        NegativeError,
-        WorkersError,
-    )
-    with as_input_errors(*expected):
-        yield
 
 
 def print_evaluation(found: "Evaluation") -> None:

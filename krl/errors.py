@@ -16,6 +16,7 @@ from typing import Final
 import typer
 
 from krl.plain_parameters import take_plainly
+from support import input_error
 from support.gc_pause import collect_seldom
 
 FINE: Final = 0
@@ -26,11 +27,9 @@ INTERRUPTED: Final = 130
 #: The status that shells report for a program whose reader, such as `head`, has gone.
 READER_GONE: Final = 141
 
+#: Wrong usage or unreadable input; the message is the line that the user reads.
+InputError = input_error.InputError
 _LONGEST_LINE = 2_000  # enough for two long paths; words of the input may have any length
-
-
-class InputError(Exception):
-    """Wrong usage or unreadable input; the message is the line that the user reads."""
 
 
 @contextmanager

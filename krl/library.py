@@ -100,14 +100,12 @@ def check(
     """
     from grammar.check.project.batch import CheckOptions, check_paths
     from krl.running.project_folders import project_root
-    from support.files.discovery import IngestError
 
     roots = [Path(path) for path in paths]
     around = [project_root(path) for path in roots]
     names = tuple(sorted(name.upper() for name in packages))
     options = CheckOptions(is_complete=complete, packages=names)
-    with as_input_errors(IngestError):
-        report = check_paths(roots, options, around=around, jobs=jobs)
+    report = check_paths(roots, options, around=around, jobs=jobs)
     findings = (
         Finding(one.path, one.region.line, one.region.column, one.severity, one.code, one.message)
         for one in report.diagnostics

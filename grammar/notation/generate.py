@@ -16,6 +16,8 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from support.input_error import InputError
+
 ANTLR_VERSION = "4.13.2"
 _LONGEST = 600  # seconds that ANTLR may take for a grammar
 HERE = Path(__file__).resolve().parents[1]
@@ -26,7 +28,7 @@ MANIFEST = "MANIFEST"
 MARK = '"""Generated from grammar/KRL.g4 by ANTLR; do not edit (make grammar)."""\n'
 
 
-class GenerationError(Exception):
+class GenerationError(InputError):
     """ANTLR could not be run, or it rejected the grammar."""
 
 

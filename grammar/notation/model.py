@@ -13,6 +13,7 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import Literal as OneOf
 
+from support.input_error import InputError
 from support.lazy_dataclass import dataclass
 
 __all__ = [
@@ -43,7 +44,7 @@ CharRange = tuple[int, int]
 MAX_CODE_POINT = 0x10FFFF
 
 
-class GrammarError(Exception):
+class GrammarError(InputError):
     """The text is not a grammar of the supported dialect; the message names the line."""
 
 

@@ -112,7 +112,6 @@ def synth(
     """
     from krl.terminal.progress import progress_bar
     from recovery.bench.copies import write_corpus
-    from support.files.discovery import IngestError
 
     wanted = _bytes(size)
     folder = out or _SYNTHETIC / f"{wanted}-{seed}"
@@ -120,7 +119,7 @@ def synth(
         raise InputError(f"{folder}: not a folder")
     ours = CORPUS / "programs"
     roots = paths or ([ours] if ours.is_dir() else [])
-    with progress_bar("writing", wanted) as advance, as_input_errors(IngestError, ValueError):
+    with progress_bar("writing", wanted) as advance, as_input_errors(ValueError):
         written = write_corpus(roots, folder, wanted, seed, advance)
     files, cells = counted(written.files, "file"), counted(written.cells, "cell")
     say(f"{written.bytes:,} bytes in {files} of {cells} in {folder}")

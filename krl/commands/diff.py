@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors, shown
+from krl.errors import FINDINGS, FINE, InputError, shown
 from krl.terminal.output_files import check_files, write_json
 
 if TYPE_CHECKING:
@@ -83,12 +83,11 @@ def diff(
 def _sources(root: Path) -> "list[Source]":
     """Return the programs below a root, with paths relative to it."""
     from grammar.syntax.source import Source
-    from support.files.discovery import IngestError, Skipped, discover, read_source
+    from support.files.discovery import Skipped, discover, read_source
 
     if root.as_posix() == _NOWHERE:
         return []
-    with as_input_errors(IngestError):
-        read = [*map(read_source, discover([root]))]
+    read = [*map(read_source, discover([root]))]
     found = []
     for one in read:
         if isinstance(one, Skipped):

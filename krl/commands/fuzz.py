@@ -46,17 +46,16 @@ def fuzz(
     from conformance.differential.construct_coverage import needs
     from conformance.suite.case import CaseError, find_cases
     from support.parallel.ordered_map import check_scheduler
-    from support.parallel.workers import WorkersError
 
     check_files(json_file)
     if scheduler is not None:
         need("distributed")
     names = _chosen(executor or [])
-    with as_input_errors(CaseError, WorkersError):
+    with as_input_errors(CaseError):
         check_scheduler(scheduler)
         rules = needs(find_cases())
     begun = time.perf_counter()
-    with as_input_errors(WorkersError), progress_bar("running programs", programs) as bar:
+    with progress_bar("running programs", programs) as bar:
         found = run(programs, seed, names, all_cores(jobs), bar, scheduler, rules, minutes)
     record = record_of(found, time.perf_counter() - begun)
     write_json(record, json_file, indent=1)

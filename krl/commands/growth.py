@@ -12,7 +12,6 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from krl.construct_ledger import expected_errors
 from krl.errors import FINE, InputError, one_line, say
 from krl.terminal.options import CorpusArgument, JobsOrOneOption, JsonTooOption, corpus_or_ours
 from krl.terminal.output_files import check_targets, write_json
@@ -50,20 +49,19 @@ def growth(
     if constructs is not None and not constructs.is_dir():
         raise InputError(f"{constructs}: not a folder")
     check_targets(out, json_file)
-    with expected_errors():
-        start = preliminary_of(GRAMMAR.with_name("preliminary.g4"))
-        ledger = Ledger.read(constructs or GRAMMAR.with_name("constructs"))
-        steps = replay(start, ledger.accepted)
-        with progress_bar("replaying") as bar:
-            record = replayed(
-                roots,
-                start,
-                steps,
-                jobs=jobs,
-                cache=out / "cache",
-                on_found=bar.expect,
-                on_done=bar,
-            )
+    start = preliminary_of(GRAMMAR.with_name("preliminary.g4"))
+    ledger = Ledger.read(constructs or GRAMMAR.with_name("constructs"))
+    steps = replay(start, ledger.accepted)
+    with progress_bar("replaying") as bar:
+        record = replayed(
+            roots,
+            start,
+            steps,
+            jobs=jobs,
+            cache=out / "cache",
+            on_found=bar.expect,
+            on_done=bar,
+        )
     record["grammar"] = "grammar/KRL.g4" if constructs is None else constructs.as_posix()
     record["version"] = metadata.version("krl-workbench")
     record["generated"] = datetime.now(UTC).isoformat(timespec="seconds")

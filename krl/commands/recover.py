@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from krl.commands.recover_auto import AutoOptions, recover_auto
-from krl.construct_ledger import expected_errors
 from krl.errors import FINDINGS, FINE, InputError, one_line
 from krl.extras import need
 from krl.terminal.options import (
@@ -105,18 +104,17 @@ def recover(
     name = "grammar/KRL.g4" if grammar is None else grammar.as_posix()
     if scheduler is not None:
         need("distributed")
-    with expected_errors():
-        chosen = read_file(grammar) if grammar else krl_grammar()
-        restrictive = read_file(GRAMMAR.with_name("preliminary.g4"))
-        surveyor = _Surveyor(roots, negatives_or_ours(negatives), out, jobs, scheduler)
-        # without any construct, the restrictive start is the grammar in force
-        if grammar is None and start and restrictive.sha256 != chosen.sha256:
-            ledger = Ledger.read(GRAMMAR.with_name("constructs"))
-            steps = replay(restrictive, ledger.accepted)
-            record = surveyor.record(chosen, name)
-            record["start"] = surveyor.start(record, restrictive, steps)
-        else:
-            record = surveyor.record(chosen, name)
+    chosen = read_file(grammar) if grammar else krl_grammar()
+    restrictive = read_file(GRAMMAR.with_name("preliminary.g4"))
+    surveyor = _Surveyor(roots, negatives_or_ours(negatives), out, jobs, scheduler)
+    # without any construct, the restrictive start is the grammar in force
+    if grammar is None and start and restrictive.sha256 != chosen.sha256:
+        ledger = Ledger.read(GRAMMAR.with_name("constructs"))
+        steps = replay(restrictive, ledger.accepted)
+        record = surveyor.record(chosen, name)
+        record["start"] = surveyor.start(record, restrictive, steps)
+    else:
+        record = surveyor.record(chosen, name)
     page = surveyor.write_page(record)
     write_json(record, out / "survey.json")
     write_json(record, json_file)

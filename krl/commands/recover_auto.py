@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from krl.construct_ledger import expected_errors
 from krl.errors import FINE, InputError, as_input_errors
 from krl.terminal.output_files import write_json
 from reports.rendering.number_format import counted
@@ -81,7 +80,7 @@ def recover_auto(roots: Sequence[Path], options: AutoOptions) -> int:
     began = time.monotonic()
     options.check()
     folder = InductionFolder(options.out)
-    with expected_errors(), as_input_errors(InductionFolderError):
+    with as_input_errors(InductionFolderError):
         start = _continued(options, folder) if options.is_continued else _begun(options)
         written_negatives, target, settings = _negatives_and_target(options, start.settings)
         language = language_of(settings.suffix) if settings.suffix else KRL

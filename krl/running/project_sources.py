@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from krl.errors import InputError, as_input_errors
+from krl.errors import InputError
 from krl.running.project_folders import project_root
 
 if TYPE_CHECKING:
@@ -58,10 +58,9 @@ def read_sources(file: Path) -> "tuple[list[Source], str, list[str]]":
 
 def _discovered(root: Path) -> "list[FoundFile]":
     """Return the files below a folder or in an archive; raises `InputError` if there are none."""
-    from support.files.discovery import FoundFile, IngestError, discover
+    from support.files.discovery import FoundFile, discover
 
-    with as_input_errors(IngestError):
-        return [one for one in discover([root]) if isinstance(one, FoundFile)]
+    return [one for one in discover([root]) if isinstance(one, FoundFile)]
 
 
 def _named(file: Path, found: "Sequence[FoundFile]") -> "FoundFile":
@@ -93,13 +92,12 @@ def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
     Raises `InputError` if there is no root, or one cannot be read.
     """
     from grammar.syntax.source import Source
-    from support.files.discovery import IngestError, source_files
+    from support.files.discovery import source_files
 
     if not roots:
         raise InputError("there is no corpus/ here: name files, folders or .zip archives")
-    with as_input_errors(IngestError):
-        for one in source_files(roots):
-            yield one.found.origin, Source(one.text, one.path)
+    for one in source_files(roots):
+        yield one.found.origin, Source(one.text, one.path)
 
 
 def _named_from(

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from grammar.notation.edits import Edit
+from support.input_error import InputError
 
 PROPOSED, ACCEPTED, REJECTED = "proposed", "accepted", "rejected"
 #: The grounds on which a construct can be accepted, the weakest first.
@@ -19,7 +20,7 @@ STATES = (PROPOSED, *GROUNDS, ACCEPTED, REJECTED)
 _REFUSED = "refused:"
 
 
-class LedgerError(Exception):
+class LedgerError(InputError):
     """A construct, the ledger or a record is invalid; the message is one line."""
 
 

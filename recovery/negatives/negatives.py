@@ -17,6 +17,7 @@ from grammar.parser.lazy_automaton import Core, Tail
 from grammar.parser.lexer import EOF, SKIPPED, Lexer
 from grammar.parser.recognizer import Recognizer, State
 from support.files.untrusted import read_bytes
+from support.input_error import InputError
 
 #: The phase that has to reject the program: the grammar, the static check, or the run.
 Phase = Literal["parse", "check", "run"]
@@ -29,7 +30,7 @@ _MOST_LEXERS = 4
 _LINE_ENDS = frozenset({"\n", "\r\n"})
 
 
-class NegativeError(Exception):
+class NegativeError(InputError):
     """A file of negatives is malformed; the message names the file and its line."""
 
 

@@ -20,6 +20,7 @@ from support.files import archives
 from support.files.archives import ArchiveError, is_archive
 from support.files.decode import Decoded, decode
 from support.files.untrusted import open_file
+from support.input_error import InputError
 from support.lazy_dataclass import dataclass
 
 #: How names of KRL files end, in any case of letters.
@@ -38,7 +39,7 @@ _LINK = "symbolic link, not followed"
 _JUNCTION = 0xA0000003  # stat.IO_REPARSE_TAG_MOUNT_POINT, which only Windows has
 
 
-class IngestError(Exception):
+class IngestError(InputError):
     """A root that cannot be surveyed; the message is one line."""
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol, TypeVar
 
+from support.input_error import InputError
+
 _T = TypeVar("_T")
 _T_co = TypeVar("_T_co", covariant=True)
 
 
-class WorkersError(Exception):
+class WorkersError(InputError):
     """The workers cannot do the work; the message is one line for a person."""
 
 

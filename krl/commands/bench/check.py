@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from krl.commands.bench.bench_command import Record, bench, print_phases
-from krl.errors import as_input_errors, say
+from krl.errors import say
 from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import or_dash, print_figures
@@ -105,17 +105,15 @@ def check(
     from grammar.bench.check_speed import measure_check, steps
     from grammar.bench.planted_mistakes import measure_planted
     from grammar.bench.slips import KINDS
-    from support.files.discovery import IngestError
 
     roots = programs_or_ours(paths)
     record: dict[str, Any] = {}
-    with as_input_errors(IngestError):
-        if speed:
-            with progress_bar("measuring", steps()) as advance:
-                record |= measure_check(roots, on_step=advance)
-        if planted:
-            with progress_bar("planting mistakes", planted) as advance:
-                record["planted"] = measure_planted(
-                    roots, planted, seed, KINDS[damage], missing=missing, on_step=advance
-                )
+    if speed:
+        with progress_bar("measuring", steps()) as advance:
+            record |= measure_check(roots, on_step=advance)
+    if planted:
+        with progress_bar("planting mistakes", planted) as advance:
+            record["planted"] = measure_planted(
+                roots, planted, seed, KINDS[damage], missing=missing, on_step=advance
+            )
     return record

@@ -6,7 +6,6 @@ from typing import Annotated
 import typer
 
 from krl.commands.bench.bench_command import Record, bench
-from krl.errors import as_input_errors
 from krl.terminal.options import JobsOption, JsonOption, all_cores, negatives_or_ours
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import or_dash, print_figures
@@ -61,18 +60,14 @@ def mutation(
     """
     from grammar.notation.g4 import read_file
     from grammar.notation.generate import GRAMMAR
-    from grammar.notation.model import GrammarError
     from recovery.bench.damaged_grammars import choose_damaged
     from recovery.bench.repair_assessment import assess_all, material_for
-    from recovery.negatives.negatives import NegativeError
-    from support.files.discovery import IngestError
 
-    with as_input_errors(GrammarError, IngestError, NegativeError):
-        whole = read_file(grammar or GRAMMAR)
-        material = material_for(whole, paths or [_PROGRAMS], negatives_or_ours(negatives), seed)
-        chosen = choose_damaged(whole, singles, multiple, seed)
-        with progress_bar("assessing", len(chosen)) as bar:
-            record = assess_all(material, chosen, jobs=all_cores(jobs), cache=cache, on_done=bar)
+    whole = read_file(grammar or GRAMMAR)
+    material = material_for(whole, paths or [_PROGRAMS], negatives_or_ours(negatives), seed)
+    chosen = choose_damaged(whole, singles, multiple, seed)
+    with progress_bar("assessing", len(chosen)) as bar:
+        record = assess_all(material, chosen, jobs=all_cores(jobs), cache=cache, on_done=bar)
     return {
         "grammar": (grammar or GRAMMAR).name,
         "shown": len(material.shown),

@@ -1,7 +1,7 @@
 """`krl bench recover`: how fast a corpus is surveyed."""
 
 from krl.commands.bench.bench_command import Record, bench, print_phases
-from krl.errors import as_input_errors, say
+from krl.errors import say
 from krl.terminal.options import JsonOption, ProgramsArgument, programs_or_ours
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import or_dash, print_figures
@@ -64,12 +64,9 @@ def recover(
     """
     from grammar.notation.generate import GRAMMAR
     from grammar.notation.krl_grammar import krl_grammar
-    from grammar.notation.model import GrammarError
     from recovery.bench.survey_speed import measure, steps
-    from support.files.discovery import IngestError
 
     roots = programs_or_ours(paths)
-    with as_input_errors(GrammarError, IngestError):
-        grammar = krl_grammar()
-        with progress_bar("measuring", steps()) as advance:
-            return {"grammar": GRAMMAR.name, **measure(roots, grammar, on_step=advance)}
+    grammar = krl_grammar()
+    with progress_bar("measuring", steps()) as advance:
+        return {"grammar": GRAMMAR.name, **measure(roots, grammar, on_step=advance)}

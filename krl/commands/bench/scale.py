@@ -82,9 +82,8 @@ def _sizes(given: str) -> list[float]:
 
 def _write(roots: Sequence[Path], corpus: Path, size: int, seed: int) -> None:
     from recovery.bench.copies import write_corpus
-    from support.files.discovery import IngestError
 
-    with as_input_errors(IngestError, ValueError):
+    with as_input_errors(ValueError):
         write_corpus(roots, corpus, size, seed)
 
 

@@ -244,9 +244,8 @@ class _Check:
     def _report(self) -> "CheckReport":
         from grammar.check.project.batch import check_paths
         from krl.running.project_folders import project_root
-        from support.files.discovery import IngestError
 
-        with as_input_errors(IngestError), progress_bar("checking") as bar:
+        with progress_bar("checking") as bar:
             report = check_paths(
                 self.paths,
                 self.options,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from krl.errors import as_input_errors, say, shown
+from krl.errors import say, shown
 from support.files.atomic_write import write_atomic
 
 if TYPE_CHECKING:
@@ -31,34 +31,33 @@ def fix_files(
     """
     from grammar.check.project.repair import repair
     from grammar.syntax.source import Source
-    from support.files.discovery import FoundFile, IngestError, Skipped, discover, read_source
+    from support.files.discovery import FoundFile, Skipped, discover, read_source
 
     by_path: dict[str, list[Diagnostic]] = defaultdict(list)
     for one in checked:
         if one.fix is not None and one.fix.is_edit:
             by_path[one.path].append(one)
     is_changed = False
-    with as_input_errors(IngestError):
-        for found in discover(paths):
-            if not isinstance(found, FoundFile) or leaves_out(found):
-                continue
-            file = read_source(found)
-            if isinstance(file, Skipped):
-                continue
-            done = repair(Source(file.text, file.path), is_wanted, by_path[found.path])
-            if not done.mended:
-                continue
-            is_changed = True
-            if is_shown:
-                _show(found.path, file.text, done.text)
-                continue
-            if found.member is not None:
-                say(f"{found.path}: not mended: it is in an archive", err=True)
-                continue
-            write_atomic(found.file, file.decoded.replaced(file.data, done.text))
-            for one in done.mended:
-                place = f"{one.path}:{one.region.line}:{one.region.column}"
-                say(f"{place}: mended {one.code}: {one.message}", err=True)
+    for found in discover(paths):
+        if not isinstance(found, FoundFile) or leaves_out(found):
+            continue
+        file = read_source(found)
+        if isinstance(file, Skipped):
+            continue
+        done = repair(Source(file.text, file.path), is_wanted, by_path[found.path])
+        if not done.mended:
+            continue
+        is_changed = True
+        if is_shown:
+            _show(found.path, file.text, done.text)
+            continue
+        if found.member is not None:
+            say(f"{found.path}: not mended: it is in an archive", err=True)
+            continue
+        write_atomic(found.file, file.decoded.replaced(file.data, done.text))
+        for one in done.mended:
+            place = f"{one.path}:{one.region.line}:{one.region.column}"
+            say(f"{place}: mended {one.code}: {one.message}", err=True)
     return is_changed
 
 

@@ -1,7 +1,7 @@
 """`krl conform`: runs the conformance cases on any executors and robots."""
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Iterable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +12,7 @@ from krl.commands.conform.exchange import compare_parsers, export_cases, import_
 from krl.commands.conform.metamorphic import check_laws
 from krl.commands.conform.planted_fault import planted
 from krl.commands.conform.results import Outputs
-from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say
+from krl.errors import FINDINGS, FINE, InputError, say
 from krl.extras import expected_extras, need
 from krl.terminal.options import JobsOption, JsonOption, scheduler_option
 from krl.terminal.output_files import check_files
@@ -69,7 +69,7 @@ def conform(
         need("junitparser")
     if scheduler is not None:
         need("distributed")
-    with _expected_errors():
+    with expected_extras():  # here or on workers
         if lint:
             return _lint(words)
         bad = ("fail", "unconfirmed") if strict else ("fail",)
@@ -97,15 +97,6 @@ def conform(
             at_once = jobs if fault is None else 1
             given = (cases, executor, robot, outputs, at_once, scheduler)
             return run_and_report(*given, bad=bad, more=more)
-
-
-@contextmanager
-def _expected_errors() -> Iterator[None]:
-    """Turn missing packages, here or on workers, and unusable workers into `InputError`."""
-    from support.parallel.workers import WorkersError
-
-    with as_input_errors(WorkersError), expected_extras():
-        yield
 
 
 def _lint(words: Iterable[str]) -> int:

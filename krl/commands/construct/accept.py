@@ -12,7 +12,6 @@ from krl.construct_ledger import (
     LEDGER,
     PRELIMINARY,
     checkout_or_packaged,
-    expected_errors,
     print_evaluation,
     print_refusals,
 )
@@ -61,14 +60,13 @@ def evaluate(
     from recovery.ledger.ledger import Ledger
     from support.files.atomic_write import write_together
 
-    with expected_errors():
-        found = _evaluated(Ledger.read(checkout_or_packaged(LEDGER)), files, corpus, jobs)
-        for evaluation in found.evaluations:
-            print_evaluation(evaluation)
-        print_refusals(found.other_refusals)
-        if keep:
-            kept = [e.kept for e in found.evaluations]
-            write_together({c.file: text_of(c).encode() for c in kept if c.file})
+    found = _evaluated(Ledger.read(checkout_or_packaged(LEDGER)), files, corpus, jobs)
+    for evaluation in found.evaluations:
+        print_evaluation(evaluation)
+    print_refusals(found.other_refusals)
+    if keep:
+        kept = [e.kept for e in found.evaluations]
+        write_together({c.file: text_of(c).encode() for c in kept if c.file})
     return FINDINGS if found.refusals else FINE
 
 
@@ -95,15 +93,14 @@ def accept(
         raise InputError(
             "accept generates the parser, ANTLR needs Java, and no java is on the PATH"
         )
-    with expected_errors():
-        current = read_file(home.grammar)
-        found = _evaluated(Ledger.read(home.ledger), files, corpus, jobs, current)
-        try:
-            written = write(found, home)
-        except AcceptanceRefused as refused:
-            print_refusals(refused.refusals)
-            typer.echo("nothing has changed")
-            return FINDINGS
+    current = read_file(home.grammar)
+    found = _evaluated(Ledger.read(home.ledger), files, corpus, jobs, current)
+    try:
+        written = write(found, home)
+    except AcceptanceRefused as refused:
+        print_refusals(refused.refusals)
+        typer.echo("nothing has changed")
+        return FINDINGS
     for evaluation in found.evaluations:
         print_evaluation(evaluation)
     accepted = sum(c.is_accepted for c in found.constructs)
@@ -130,19 +127,18 @@ def replay(
 
     if check and (out is not None or until is not None):
         raise InputError("--check goes with neither --out nor --until")
-    with expected_errors():
-        preliminary = preliminary_of(PRELIMINARY)
-        ledger = Ledger.read(LEDGER)
-        if check:
-            found = list(findings(ledger, preliminary, GRAMMAR))
-            for line in found:
-                say(line)
-            if not found:
-                constructs = counted(len(ledger.accepted), "construct")
-                typer.echo(f"{GRAMMAR.as_posix()} is the replay of {constructs}")
-            return FINDINGS if found else FINE
-        chosen = [c for c in ledger.accepted if until is None or (c.number or 0) <= until]
-        steps = replayed(preliminary, chosen)
+    preliminary = preliminary_of(PRELIMINARY)
+    ledger = Ledger.read(LEDGER)
+    if check:
+        found = list(findings(ledger, preliminary, GRAMMAR))
+        for line in found:
+            say(line)
+        if not found:
+            constructs = counted(len(ledger.accepted), "construct")
+            typer.echo(f"{GRAMMAR.as_posix()} is the replay of {constructs}")
+        return FINDINGS if found else FINE
+    chosen = [c for c in ledger.accepted if until is None or (c.number or 0) <= until]
+    steps = replayed(preliminary, chosen)
     text = steps[-1][1].text if steps else preliminary.text
     if out is None:
         typer.echo(text, nl=False)

@@ -7,7 +7,7 @@ import typer
 
 from krl.commands.construct.accept import accept, evaluate, replay
 from krl.commands.construct.oracle import oracle
-from krl.construct_ledger import LEDGER, PRELIMINARY, checkout_or_packaged, expected_errors
+from krl.construct_ledger import LEDGER, PRELIMINARY, checkout_or_packaged
 from krl.errors import FINE, InputError, say
 from krl.terminal.options import Commands
 from krl.terminal.output_files import check_files, write_json
@@ -37,8 +37,7 @@ def show_all(
     from recovery.ledger.overview import row_of
 
     check_files(json_file)
-    with expected_errors():
-        ledger = Ledger.read(checkout_or_packaged(LEDGER))
+    ledger = Ledger.read(checkout_or_packaged(LEDGER))
     rows = [
         (
             f"{c.number:04}",
@@ -72,11 +71,10 @@ def show(
     from recovery.ledger.overview import difference, page_of
     from support.files.discovery import printable
 
-    with expected_errors():
-        ledger = Ledger.read(checkout_or_packaged(LEDGER))
-        construct = ledger.find(wanted)
-        start = preliminary_of(checkout_or_packaged(PRELIMINARY))
-        change = list(difference(construct, start, ledger))
+    ledger = Ledger.read(checkout_or_packaged(LEDGER))
+    construct = ledger.find(wanted)
+    start = preliminary_of(checkout_or_packaged(PRELIMINARY))
+    change = list(difference(construct, start, ledger))
     for line in (*page_of(construct), *change):
         typer.echo(printable(line.expandtabs(4)))
     return FINE
@@ -98,7 +96,6 @@ def propose(
         out: Where to write the file.
     """
     from grammar.notation.model import GrammarError
-    from recovery.ledger.construct import LedgerError
     from recovery.ledger.draft import propose as write
     from support.files.untrusted import json_of, read_bytes
 
@@ -111,8 +108,6 @@ def propose(
         raise InputError(f"{survey}: no such survey; run krl recover first") from error
     except (GrammarError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(f"{survey}: not a survey that krl recover wrote") from error
-    except LedgerError as error:
-        raise InputError(str(error)) from error
     return FINE
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from krl.construct_ledger import LEDGER, checkout_or_packaged, expected_errors
+from krl.construct_ledger import LEDGER, checkout_or_packaged
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say
 from krl.terminal.progress import progress_bar
 from krl.terminal.text_table import print_columns
@@ -45,26 +45,25 @@ def oracle(
 
     if sum(option is not None for option in (bundle, record, command)) > 1:
         raise InputError("only one of --bundle, --record and --command")
-    with expected_errors():
-        ledger = Ledger.read(checkout_or_packaged(LEDGER))
-        waiting = [c for c in ledger.constructs if reason_to_ask(c)]
-        chosen = [ledger.find(one) for one in wanted] if wanted else waiting
-        with as_input_errors(OracleError):
-            if record is not None:
-                recorded = RecordedOracle(record)
-                return _ask(ledger.constructs if not wanted else chosen, recorded)
-            if command is not None:
-                words = shlex.split(command, posix=os.name != "nt")
-                if not words:
-                    raise InputError("--command is empty")
-                return _ask(chosen, CommandOracle(words, name or Path(words[0]).name, timeout))
-            if bundle is not None:
-                programs = [program for c in chosen for program in programs_of(c)]
-                if not programs:
-                    raise InputError("nothing waits for a verdict: name constructs")
-                write_bundle(programs, bundle)
-                say(f"wrote {len(programs)} programs and a form to {bundle.as_posix()}")
-                return FINE
+    ledger = Ledger.read(checkout_or_packaged(LEDGER))
+    waiting = [c for c in ledger.constructs if reason_to_ask(c)]
+    chosen = [ledger.find(one) for one in wanted] if wanted else waiting
+    with as_input_errors(OracleError):
+        if record is not None:
+            recorded = RecordedOracle(record)
+            return _ask(ledger.constructs if not wanted else chosen, recorded)
+        if command is not None:
+            words = shlex.split(command, posix=os.name != "nt")
+            if not words:
+                raise InputError("--command is empty")
+            return _ask(chosen, CommandOracle(words, name or Path(words[0]).name, timeout))
+        if bundle is not None:
+            programs = [program for c in chosen for program in programs_of(c)]
+            if not programs:
+                raise InputError("nothing waits for a verdict: name constructs")
+            write_bundle(programs, bundle)
+            say(f"wrote {len(programs)} programs and a form to {bundle.as_posix()}")
+            return FINE
     if not chosen:
         typer.echo("nothing waits for a verdict")
     print_columns(
