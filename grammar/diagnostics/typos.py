@@ -5,8 +5,8 @@ rests on it. A slip is one letter that is missing, added or replaced, or two nei
 swapped. Names that belong to a series are not slips of one another: those that differ in a digit,
 in the last letter of a word (``PICKA``, ``PICKB``), in a prefix (``XP1`` and ``FP1``), or as GET
 and SET. If all names of a series are known, only digits tell its members apart; `Series` says so
-for each name. Small letters before a capital (``gnPart``) are a prefix only if other names have the
-same prefix.
+for each name. What tells the kind of a name (``gnPart``, ``MY_PART``) is a prefix only if other
+names have the same prefix.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ _ALIKE = ({"O", "0"}, {"I", "1"}, {"L", "1"})
 # A final letter can number a word that is shorter than this: POSX, POSY.
 _SHORTEST_TO_END = 6
 # Prefixes with which inline forms name the data of a point: XP1, FP1.
-_PREFIXES = frozenset("XF")
-# A prefix of small letters that tells the kind of a name: gnPart, a global number.
-_SMALL_PREFIX = re.compile(r"[a-z]+(?=[A-Z])")
+_OF_POINTS = frozenset("XF")
+# A prefix that tells the kind of a name: gnPart, a global number; IPO_MODE, APO_MODE.
+_PREFIX = re.compile(r"[a-z]+(?=[A-Z])|[A-Z]{1,3}_")
 
 
 class Series(Enum):
@@ -74,7 +74,7 @@ class Typos:
         """Add names. Letter case is ignored; the first spelling of a name is kept."""
         for name in names:
             key = name.upper()
-            self.prefixes.add(small_prefix(name))
+            self.prefixes.add(prefix_of(name))
             if key not in self._names and self._shortest <= len(key) <= _LONGEST:
                 self._names[key] = name, series
                 for shorter in _shortened(key):
@@ -85,7 +85,7 @@ class Typos:
     ) -> tuple[str, ...]:
         """Return the names of which ``name`` may be a misspelling, in alphabetical order.
 
-        ``has_slipped`` says that no other name has its `small_prefix`, ``has_plurals`` that a name
+        ``has_slipped`` says that no other name has its prefix, ``has_plurals`` that a name
         with an S more may be another name: PART and PARTS, as data are called.
         """
         wrong = name.upper()
@@ -104,9 +104,15 @@ def _shortened(key: str) -> list[str]:
     return [key, *[key[:index] + key[index + 1 :] for index in range(len(key))]]
 
 
-def small_prefix(name: str) -> str:
-    """Return the small letters before the first capital of a name; ``""`` if there are none."""
-    found = _SMALL_PREFIX.match(name)
+def common_start(one: str, other: str) -> int:
+    """Return the length of the common beginning of two names."""
+    pairs = enumerate(zip(one, other, strict=False))
+    return next((at for at, (a, b) in pairs if a != b), min(len(one), len(other)))
+
+
+def prefix_of(name: str) -> str:
+    """Return what tells the kind of a name: small letters before a capital, a few before a mark."""
+    found = _PREFIX.match(name)
     return found[0] if found else ""
 
 
@@ -114,10 +120,9 @@ def _is_slip(
     misspelt: str, name: str, series: Series, has_slipped: bool, has_plurals: bool
 ) -> bool:
     """Return whether two names with a common key are one slip apart and not in a series."""
-    has_slipped = has_slipped and bool(small_prefix(name))
+    has_slipped = has_slipped and bool(prefix_of(name))
     wrong, right = misspelt.upper(), name.upper()
-    pairs = enumerate(zip(wrong, right, strict=False))
-    start = next((i for i, (a, b) in pairs if a != b), min(len(wrong), len(right)))
+    start = common_start(wrong, right)
     if len(wrong) != len(right):
         longer, shorter = (wrong, right) if len(wrong) > len(right) else (right, wrong)
         if longer[start + 1 :] != shorter[start:]:
@@ -144,7 +149,7 @@ def _is_slip(
     if wrong[start + 1 :] == right[start + 1 :]:
         if series is Series.NONE or {wrong[start], right[start]} in _ALIKE:
             return True
-        if not has_slipped and _is_prefix(misspelt, name, start, series):
+        if not has_slipped and _is_prefix(misspelt, name, start):
             return False
         if series is Series.DIGITS:
             return not (wrong[start].isdigit() and right[start].isdigit())
@@ -157,28 +162,20 @@ def _is_slip(
     return wrong[start:] == swapped and not is_numbered
 
 
-def _is_capitalised(name: str) -> bool:
-    return name[:1].isupper() and name[1:2].islower()
-
-
-def _is_prefix(misspelt: str, name: str, index: int, series: Series) -> bool:
-    """Return whether a letter of a name is a prefix that tells its kind: xHome, I_START.
-
-    Before a mark a few letters are a prefix: IPO_MODE, APO_MODE.
-    """
+def _is_prefix(misspelt: str, name: str, index: int) -> bool:
+    """Return whether a letter of a name belongs to what tells its kind: xHome, I_START."""
     if name[0] == "$" and index == 0:
         return misspelt[1:] != name[1:] and misspelt[0].islower() and misspelt[1:2].isupper()
     if index == 0:
-        is_short = "_" in name[1 : _SHORTEST_WORD if series is Series.LETTERS else 2]
-        is_prefix = {misspelt[0].upper(), name[0].upper()} <= _PREFIXES
-        return is_prefix or is_short or bool(small_prefix(name))
+        is_of_point = {misspelt[0].upper(), name[0].upper()} <= _OF_POINTS
+        return is_of_point or bool(prefix_of(name))
     return name[index - 1] == "_" and name[index + 1 : index + 2] in ("", "_")
 
 
 def _loses_its_first(name: str) -> bool:
     """Return whether a name is not plausible without its first letter, which is no prefix then."""
-    is_prefix = name[0] == "$" or name[0].upper() in _PREFIXES or small_prefix(name)
-    return _is_capitalised(name) or not is_prefix
+    is_prefix = name[0] == "$" or name[0].upper() in _OF_POINTS or prefix_of(name)
+    return not is_prefix or (name[0].isupper() and name[1:2].islower())
 
 
 def _numbers(name: str, index: int, series: Series, shortest: int = _LONGEST) -> bool:

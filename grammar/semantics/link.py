@@ -122,7 +122,8 @@ class Project:
             self._add_packages(self.packages)
         self._gap.update(_gap(modules, is_complete))
         self.types = DeclaredTypes()
-        self.has_config = any(map(_has_read, modules)) and not all(map(_is_in_system, modules))
+        config = [one for one in modules if _is_config(one) and one.table and not one.is_cut]
+        self.has_config = bool(config) and not all(map(_is_in_system, modules))
         self.clashes = tuple(
             Clash(space, tuple(found))
             for space, names in self._names.items()
@@ -348,11 +349,6 @@ def _is_exported(symbol: Symbol, module: Module) -> bool:
 
 def _is_config(module: Module) -> bool:
     return module.name == "$CONFIG" and module.suffix == ".dat"
-
-
-def _has_read(module: Module) -> bool:
-    """Return whether a file is the $CONFIG list and can be read to its end."""
-    return _is_config(module) and module.table is not None and not module.is_cut
 
 
 @cache

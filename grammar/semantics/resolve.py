@@ -100,7 +100,8 @@ class _Walk:
             use, below = plan
             if use is not None:
                 name, space = getattr(node, use[0]), use[1]
-                if _is_announced(self.name(scope, name, space)) and kind is ast.Call:
+                known = self.name(scope, name, space)
+                if kind is ast.Call and type(known) is Found and known.symbol.kind is Kind.EXTERNAL:
                     self._open.append((space, name))
             for field in below:
                 value = getattr(node, field)
@@ -134,8 +135,8 @@ class _Walk:
         answer = known.get(key)
         if answer is None:
             symbol = structure.symbol.members.get(key)
-            answer = Found(symbol, structure.scope) if symbol else _no_member(structure)
-            known[key] = answer
+            lacking = Undetermined(Reason.SYSTEM) if structure.is_open else NotFound()
+            answer = known[key] = Found(symbol, structure.scope) if symbol else lacking
         self.answers[name] = answer
         if type(answer) is not Found:
             self._open.append((None, name))
@@ -187,11 +188,6 @@ class _Walk:
                     todo.append(component.value)
 
 
-def _is_announced(answer: Answer) -> bool:
-    """Return whether a routine is only known by its EXT."""
-    return isinstance(answer, Found) and answer.symbol.kind is Kind.EXTERNAL
-
-
 def _structure(answer: Answer | None) -> Found | None:
     """Return the structure that is the type of a variable, a member or a function's result."""
     return _as_structure(answer.type_symbol()) if isinstance(answer, Found) else None
@@ -201,10 +197,6 @@ def _as_structure(answer: Answer | None) -> Found | None:
     if isinstance(answer, Found) and answer.symbol.kind is Kind.STRUCTURE:
         return answer
     return None
-
-
-def _no_member(structure: Found) -> Answer:
-    return Undetermined(Reason.SYSTEM) if structure.is_open else NotFound()
 
 
 # ---------------------------------------------------------------- nodes that need more than a plan
@@ -243,14 +235,8 @@ def _importation(
     todo.extend(node.declarator.indices or ())
 
 
-def _free_aggregate(
-    walk: _Walk, scope: Scope, node: ast.Aggregate, todo: list[ast.Node | None]
-) -> None:
-    walk.aggregate(scope, node, None, todo)
-
-
 _SPECIAL: dict[type[Any], _Special] = {
-    ast.Aggregate: _free_aggregate,
+    ast.Aggregate: lambda walk, scope, node, todo: walk.aggregate(scope, node, None, todo),
     ast.Assignment: _assignment,
     ast.Importation: _importation,
     ast.Member: _Walk.chain,

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Set
 from functools import cached_property
 
-from grammar.diagnostics.typos import Typos
+from grammar.diagnostics.typos import Typos, common_start
 from grammar.semantics.predefined import System
 from grammar.syntax.source import Source, names_in_text
 
@@ -74,8 +74,8 @@ class Spelling:
     def is_likelier(self, one: str, other: str) -> bool:
         """Return whether ``one`` is certainly the right one of two names that a slip separates."""
         names = one.upper(), other.upper()
-        start = _common(*names)
-        end = _common(*(name[: start - 1 if start else None : -1] for name in names))
+        start = common_start(*names)
+        end = common_start(*(name[: start - 1 if start else None : -1] for name in names))
         for widths in _WIDTHS if len(one) == len(other) else _WIDE:
             counts = [self._others(_around(name, start, end, *widths), names) for name in names]
             if counts[0] != counts[1]:
@@ -106,11 +106,6 @@ class Spelling:
 def spelling_of(sources: Iterable[Source]) -> Spelling:
     """Return the spelling of the names in some texts, which are read when it is first used."""
     return Spelling(lambda: [(source.path, names_in_text(source.text)) for source in sources])
-
-
-def _common(one: str, other: str) -> int:
-    pairs = enumerate(zip(one, other, strict=False))
-    return next((at for at, (a, b) in pairs if a != b), min(len(one), len(other)))
 
 
 def _around(name: str, start: int, end: int, before: int, behind: int) -> str:

@@ -227,7 +227,8 @@ class _Routine:
                         found.append(statement)
                     if not is_known_call(self._context, statement, step.is_test):
                         continue
-                    if isinstance(statement, ast.CallStatement) and _is_bas(statement):
+                    call = statement.call if isinstance(statement, ast.CallStatement) else None
+                    if call and call.name.key == "BAS":
                         continue  # it may set $ADVANCE
                 todo.append(step)
         for node in found:
@@ -253,7 +254,3 @@ def _advance(context: Context, node: ast.Node | None) -> float | None:
                 known = constant(context, value)
                 return known if isinstance(known, int) else -1
     return None
-
-
-def _is_bas(node: ast.CallStatement) -> bool:
-    return node.call.name.key == "BAS"

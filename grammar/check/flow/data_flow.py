@@ -8,7 +8,8 @@ from __future__ import annotations
 import re
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from functools import cached_property, partial
+from functools import cached_property, partial, reduce
+from operator import or_
 
 from grammar.check.analysis.accesses import Access, Parameter, Use, accesses, calls_of
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
@@ -92,18 +93,11 @@ class DataFlow:
             is_open = access.use is Use.READ or (is_passed_open and access.to)
             return 0 if is_open else bits.get(access.key, 0)
 
-        at_node: dict[FlowNode, int] = {}
-
-        def passed(node: FlowNode, _: int, value: int) -> int:
-            here = at_node.get(node)
-            if here is None:
-                here = 0
-                for access in self.accesses_at(node):
-                    here |= given(access)
-                at_node[node] = here
-            return value | here
-
-        known = self.reaching(0, passed)
+        at_node = {
+            node: reduce(or_, map(given, self.accesses_at(node)), 0)
+            for node in self._routine.reached
+        }
+        known = self.reaching(0, lambda node, _, value: value | at_node[node])
         reported = dict.fromkeys(Use, 0)
         for node in sorted(known, key=position):
             value = known[node]
@@ -116,11 +110,8 @@ class DataFlow:
 
     def changed(self, node: FlowNode, bits: dict[str, int]) -> int:
         """Return the variables that are assigned at a node."""
-        changed = 0
-        for access in self.accesses_at(node):
-            if access.use is not Use.READ:
-                changed |= bits.get(access.key, 0)
-        return changed
+        changed = (one.key for one in self.accesses_at(node) if one.use is not Use.READ)
+        return reduce(or_, (bits.get(key, 0) for key in changed), 0)
 
     def reaching(
         self, first: int, passed: Callable[[FlowNode, int, int], int]

@@ -264,9 +264,8 @@ class _Collector:
     def _call(self, node: ast.Call) -> None:
         for argument in node.arguments:
             if argument is not None:
-                self._made.reset.add(
-                    self._key(argument)
-                )  # PULSE, and what a routine may do with it
+                # PULSE, and what a routine may do with it
+                self._made.reset.add(self._key(argument))
         self._summaries.call(node)
 
 

@@ -122,11 +122,7 @@ class SummaryCollector:
                     f"the argument for {parameter.name} is left out, and {address[1]} reads it"
                 )
                 reason = f"{address[0].rpartition('/')[2]} does not ask VARSTATE first"
-                region = Region.of(context.source, node.span)
-                holds = ((READS, *to),)
-                self.made.suspects.append(
-                    Suspect("argument-missing", region, message, reason, holds)
-                )
+                self._suspect("argument-missing", node.span, message, reason, ((READS, *to),))
                 continue
             value = constant(context, argument)
             if isinstance(value, int | float) and type(value) is not bool:

@@ -7,7 +7,7 @@ from collections import Counter
 from functools import cache, cached_property
 
 from grammar.check.analysis.context import Context
-from grammar.diagnostics.typos import Series, Typos, small_prefix
+from grammar.diagnostics.typos import Series, Typos, prefix_of
 from grammar.semantics.predefined import System
 from grammar.semantics.resolve import Use
 from grammar.semantics.scopes import Found
@@ -71,7 +71,7 @@ class LikelyNames:
     def _declared(self, space: Space, name: str) -> tuple[str, ...]:
         """Return the declared names, those of the file rather than those visible everywhere."""
         own, everywhere = self._own_typos(space), self._context.project.typos[space]
-        prefix = small_prefix(name)
+        prefix = prefix_of(name)
         has_slipped = prefix not in self._prefixes and prefix not in everywhere.prefixes
         has_plurals = space is Space.VALUE
         for known in (own, everywhere):
@@ -91,7 +91,7 @@ class LikelyNames:
     def _prefixes(self) -> frozenset[str]:
         """The short prefixes that several names in the file share."""
         names = {name.key: name.text for name in self._context.resolution.answers}
-        counts = Counter(map(small_prefix, names.values()))
+        counts = Counter(map(prefix_of, names.values()))
         return frozenset(prefix for prefix, count in counts.items() if count > 1)
 
 

@@ -84,7 +84,7 @@ def test_only_digits_number_what_is_wholly_known(wrong: str) -> None:
     [
         ("MNITMOV", "INITMOV", True, True),
         ("et", "ret", True, True),
-        ("APO_MODE", "IPO_MODE", False, True),
+        ("APO_MODE", "IPO_MODE", False, False),
         ("XHOME", "FHOME", False, False),
         ("O_START", "I_START", False, False),
     ],
@@ -94,6 +94,7 @@ def test_the_first_letter_may_be_a_slip(
 ) -> None:
     """It is none if it is a prefix of points or signals, or of a word that others may have."""
     assert is_slip == bool(Typos([right]).meant(wrong))
+    assert (is_slip or right == "IPO_MODE") == bool(Typos([right]).meant(wrong, has_slipped=True))
     assert is_slip_if_known == bool(Typos([right], series=Series.DIGITS).meant(wrong))
 
 
