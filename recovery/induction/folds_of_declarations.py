@@ -196,7 +196,7 @@ def types(view: GrammarView) -> Iterator[InferredStep]:
         named = [*map(view.is_name, line), False]
         kinds = (n for n, e in enumerate(line[:-1]) if view.words(e) or view.is_kind(e))
         place = next((n for n in kinds if named[n + 1] and not named[n + 2]), 0)
-        kind, behind = line[place : place + 1], view.source(rule.name, line[place + 1 :][:2])
+        kind, behind = line[place : place + 1], view.source(rule.name, line[place + 1 :])
         match kind:
             case [Reference(name=name)] if place and name in view.rules.type_rules:
                 first_words = (e.name for e in walk(line[0]) if isinstance(e, Reference))

@@ -342,7 +342,7 @@ class Induction:
                 )
             ):
                 reason = _FEW_LINES
-            elif least[1] > 1 and not is_new and table.have_one_word(lines):
+            elif least != _LINE and not is_new and table.have_one_word(lines):
                 reason = "a word that all lines have behind a name may be a keyword"
             elif fixed & changed:
                 continue  # its place has changed in this round: the next one will try it again

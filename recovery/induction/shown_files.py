@@ -47,8 +47,9 @@ class ShownFiles:
         """Return the steps without those under which a file fails earlier than before, and these.
 
         A word of a step that lines use as a name is added to the rules of ``types`` first, which is
-        enough if all these lines have it there; then to the rule of ``names``, if more files show
-        the step than have these lines.
+        enough if all these lines have it there: if there is a rule of ``names`` it becomes one of
+        them, as types are names too. Else it is added to that rule if more files show the step
+        than have these lines.
         """
         before = self.failures(grammar)[1]
         after = self.failures(grown(grammar, taken))[1]
@@ -82,6 +83,8 @@ class ShownFiles:
                 lost_in = [place for place, found in read.items() if _first(found) < worse[place]]
                 if not lost_in or (may_lose and self._is_outvoted(lost_in, step)):
                     reason = ""
+                    if rules is types and names:  # types are names
+                        version = names_kept(step, used, named)
                     worse |= {place: _first(read[place]) for place in lost_in}
                     break
                 reason = "loses lines that can be read"

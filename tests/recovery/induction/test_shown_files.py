@@ -38,16 +38,25 @@ def test_one_file_that_uses_a_word_as_a_name(toy: Grammar, form: str, kept: int)
 
 
 def test_a_word_that_lines_use_as_a_type(toy: Grammar) -> None:
-    """It becomes one where types are listed, even if more files have such lines than the step."""
+    """It becomes one where types are listed, even if more files have such lines than the step.
+
+    Where there is a rule of names it becomes one of these.
+    """
     text = toy.text.replace("    | halt\n", "    | halt\n    | HALT kind NAME\n")
-    start = read(text.replace("halt\n    : HALT", "kind : NAME ;\n\nhalt\n    : HALT"))
+    rules = "kind : name ;\n\nname : NAME ;\n\nhalt\n    : HALT"
+    start = read(text.replace("halt\n    : HALT", rules))
     files = [CorpusFile(f"a/{n}", f"HALT WIDE {n}\n", frozenset("a")) for n in "ABC"]
     shown = CorpusFile("b", "WIDE A 1\n", frozenset("b"))
     edits = (AddToken("WIDE"), AddAlternative("simpleStatement", "WIDE NAME NUMBER"))
     step = AcceptedStep("wide", edits, Evidence(1, 1, 1))
-    for types, found in (((), []), (["kind"], [AddAlternative("kind", "WIDE")])):
-        taken, _ = ShownFiles((*files, shown)).kept(start, [step], None, types)
-        assert found == [e for s in taken for e in s.edits if e not in edits]
+    for names, types, found in (
+        (None, [], None),
+        (None, ["kind"], "kind"),
+        ("name", ["kind"], "name"),
+    ):
+        taken, _ = ShownFiles((*files, shown)).kept(start, [step], names, types)
+        added = [e for s in taken for e in s.edits if e not in edits]
+        assert ([AddAlternative(found, "WIDE")] if found else []) == added
 
 
 def test_a_stray_sign_moves_no_word(toy: Grammar) -> None:
