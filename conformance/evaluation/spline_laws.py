@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import Final
 
@@ -120,17 +120,19 @@ def _off_block(one: EndedMotion) -> str:
 
 def _off_ptp_block(one: EndedMotion) -> str:
     """Return by how much the axes of a block of SPTP are off, or "" if its targets are no axes."""
-    most = one.axis_rates
     names = [axis.name for axis in one.machine.every_axis]
-    if most is None or len({tuple(each.axis_velocity) for each in one.settings}) > 1:
-        return ""
-    points = [one.ends[0]]
+    points, speeds = [one.ends[0]], []
     for part in one.motion.parts:
+        own = replace(one.motion, settings=part.settings or one.motion.settings)
+        most = replace(one, motion=own).axis_rates
+        if most is None:
+            return ""
+        speeds.append(most[0])
         if not set(names[:ROBOT_AXES]) & set(part.target) or set(POINT) & set(part.target):
             return ""
         points.append(completed(part.target, names, points[-1]))
     targets = np.array(points)
-    spans = (np.abs(np.diff(targets, axis=0)) / most[0]).max(axis=1)
+    spans = (np.abs(np.diff(targets, axis=0)) / speeds).max(axis=1)
     if spans.min() < TOLERANCE_DEGREES or len(spans) < 2:
         return ""
     knots = np.cumsum([0.0, *spans])

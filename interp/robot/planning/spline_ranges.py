@@ -7,7 +7,7 @@ The start or end of a range is given in mm from the end of the next segment, or 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,6 +27,8 @@ _ROUNDS = 60
 _SAME = 1e-6
 
 Pieces = tuple[Piece, ...]
+#: The number of the segment before which a START, PART or END of a range is written, and that.
+_Mark = tuple[int, SplineRange]
 
 
 def with_ranges(motion: Motion, pieces: Pieces) -> Pieces:
@@ -37,7 +39,7 @@ def with_ranges(motion: Motion, pieces: Pieces) -> Pieces:
     or brake [SPL-05]; and if a block has both kinds of ranges [SPL-10].
     """
     marks = list(_marks(motion))
-    keywords = {mark.range.keyword for mark in marks}
+    keywords = {mark.keyword for _, mark in marks}
     if not keywords:
         return pieces
     if len(keywords) > 1:
@@ -48,25 +50,9 @@ def with_ranges(motion: Motion, pieces: Pieces) -> Pieces:
     return _timed(pieces, marks)
 
 
-@dataclass(frozen=True, slots=True)
-class _Mark:
-    """A START, PART or END of a range, and the number of the segment before which it is written."""
-
-    range: SplineRange
-    number: int
-
-    @property
-    def value(self) -> float:
-        """What is written with it, or 0."""
-        return self.range.value or 0.0
-
-
 def _marks(motion: Motion) -> Iterator[_Mark]:
-    for number, part in enumerate(motion.parts):
-        for each in part.ranges:
-            yield _Mark(each, number)
-    for each in motion.ranges:
-        yield _Mark(each, len(motion.parts))
+    every = [*(part.ranges for part in motion.parts), motion.ranges]
+    yield from ((number, mark) for number, marks in enumerate(every) for mark in marks)
 
 
 # ------------------------------------------------------------------------------- constant speed
@@ -75,11 +61,10 @@ def _marks(motion: Motion) -> Iterator[_Mark]:
 def _constant(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
     ends = np.cumsum([0.0, *(_length(piece) for piece in pieces)])
     start: float | None = None
-    for mark in marks:
-        wanted_range = mark.range
-        segment = min(mark.number + (0 if wanted_range.on_start else 1), len(pieces))
-        place = float(np.clip(ends[segment] + mark.value, 0.0, ends[-1]))
-        if wanted_range.edge == "START":
+    for number, mark in marks:
+        segment = min(number + (not mark.on_start), len(pieces))
+        place = float(np.clip(ends[segment] + (mark.value or 0.0), 0.0, ends[-1]))
+        if mark.edge == "START":
             start = place
         elif start is not None:
             pieces = _kept(pieces, ends, start, place)
@@ -149,18 +134,18 @@ def _timed(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
     groups: list[range] = []
     shares: list[float] = []
     begins: int | None = None
-    for mark in marks:
-        wanted_range = mark.range
-        if wanted_range.edge == "START":
-            groups, shares, begins = [], [], mark.number
-        elif begins is not None and wanted_range.edge == "PART":
-            groups.append(range(begins, mark.number))
-            shares.append(mark.value)
-            begins = mark.number
+    for number, mark in marks:
+        value = mark.value or 0.0
+        if mark.edge == "START":
+            groups, shares, begins = [], [], number
+        elif begins is not None and mark.edge == "PART":
+            groups.append(range(begins, number))
+            shares.append(value)
+            begins = number
         elif begins is not None:
             if not groups:
-                groups, shares = [range(begins, mark.number)], [mark.value]
-            wanted = [mark.value * share / (sum(shares) or 1.0) for share in shares]
+                groups, shares = [range(begins, number)], [value]
+            wanted = [value * share / (sum(shares) or 1.0) for share in shares]
             pieces = _slowed(pieces, groups, wanted)
             begins = None
     return pieces
