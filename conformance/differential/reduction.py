@@ -1,25 +1,21 @@
 """Test case reduction: programs are made as small as possible while a property holds.
 
-First, lines are blanked: routines, halves of blocks, statements, the frames of blocks, branches,
-declarations. Blank lines keep the numbers of all other lines, so that places remain valid during a
-whole pass. When no line can be removed any more, expressions are replaced by their parts and by
-constants. The idea is that of delta debugging (ddmin), guided by the syntax tree.
+First, files and lines are left out by delta debugging (`recovery.reproducer.ddmin`). When none can
+be removed any more, expressions are replaced by their parts and by constants.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import chain, pairwise
+from functools import partial
+from itertools import chain
 
 from conformance.differential.divergence import Files
 from grammar.syntax import ast
 from grammar.syntax.build import read_module
-from grammar.syntax.source import Source
-from grammar.syntax.walk import BODIES, bodies, children, walk
-
-#: A set of lines, counted from 1, in the file with an index.
-_Unit = tuple[int, frozenset[int]]
+from grammar.syntax.walk import bodies, children, walk
+from recovery.reproducer.ddmin import minimized
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +35,10 @@ def reduce_program(files: Files, holds: Callable[[Files], bool], most: int = 1_5
     has_changed = True
     while has_changed:
         has_changed = False
-        while search.blank_lines():
+        while search.drop_lines():
             has_changed = True
         while search.simplify():
             has_changed = True
-    search.tidy()
     return Reduced(search.files, statement_count(search.files))
 
 
@@ -71,15 +66,15 @@ def _statements(routine: ast.Routine) -> Iterator[ast.Node]:
 class _Search:
     def __init__(self, files: Files, holds: Callable[[Files], bool], most: int) -> None:
         self.files = files
-        self.tried = 0
+        self._tried = {files}
         self._holds = holds
         self._most = most
 
     def _try(self, files: Files) -> bool:
         """Replace the files if the property holds for the new ones; return whether it does."""
-        if self.tried >= self._most or files == self.files:
+        if len(self._tried) > self._most or files in self._tried:
             return False
-        self.tried += 1
+        self._tried.add(files)
         if not self._holds(files):
             return False
         self.files = files
@@ -87,27 +82,17 @@ class _Search:
 
     # ----------------------------------------------------------------------- lines
 
-    def blank_lines(self) -> bool:
-        """Try to blank everything removable, large units first; return whether anything was."""
+    def drop_lines(self) -> bool:
+        """Try to leave out files and lines; return whether anything was."""
         before = self.files
         for number in range(len(self.files) - 1, 0, -1):
             self._try(self.files[:number] + self.files[number + 1 :])
-        for number, lines in _units(self.files):
-            path, text = self.files[number]
-            rows = text.split("\n")
-            if any(rows[line - 1].strip() for line in lines):
-                kept = ("" if n in lines else row for n, row in enumerate(rows, start=1))
-                self._try(_with_text(self.files, number, path, "\n".join(kept)))
+        for number, (path, text) in enumerate(self.files):
+            minimized(text.splitlines(keepends=True), partial(self._has_lines, number, path))
         return self.files != before
 
-    def tidy(self) -> None:
-        """Remove blank lines, if the property still holds without them."""
-        self._most += 1
-        files = tuple(
-            (path, "\n".join(row for row in text.split("\n") if row.strip()) + "\n")
-            for path, text in self.files
-        )
-        self._try(files)
+    def _has_lines(self, number: int, path: str, lines: list[str]) -> bool:
+        return self._try(_with_text(self.files, number, path, "".join(lines)))
 
     # ----------------------------------------------------------------------- expressions
 
@@ -125,66 +110,6 @@ class _Search:
 def _with_text(files: Files, number: int, path: str, text: str) -> Files:
     return (*files[:number], (path, text), *files[number + 1 :])
 
-
-# --------------------------------------------------------------------------------- what can go
-
-
-def _units(files: Files) -> list[_Unit]:
-    """Return all sets of lines that may be removed together, the largest first."""
-    found: list[_Unit] = []
-    for number, (path, text) in enumerate(files):
-        module = read_module(text, path)
-        if not isinstance(module, ast.Module):
-            continue
-        source, content = Source(text, path), module.content
-        if isinstance(content, ast.DataList):
-            found += [(number, lines) for lines in _groups(source, content.items)]
-            continue
-        for place, routine in enumerate(content.routines):
-            if place or number:
-                found.append((number, _lines(source, routine)))
-            found += [(number, lines) for lines in _in_body(source, routine.body)]
-    return sorted(found, key=lambda one: -len(one[1]))
-
-
-def _in_body(source: Source, body: Sequence[ast.Node]) -> Iterator[frozenset[int]]:
-    todo = [body]
-    while todo:
-        block = todo.pop()
-        yield from _groups(source, block)
-        for node in block:
-            inner = list(chain.from_iterable(bodies(node)))
-            if type(node) in BODIES:
-                yield from _frames(source, node, inner)
-                todo.append(inner)
-
-
-def _lines(source: Source, node: ast.Node) -> frozenset[int]:
-    first, last = source.place(node.span[0])[0], source.place(max(node.span[1] - 1, 0))[0]
-    return frozenset(range(first, last + 1))
-
-
-def _groups(source: Source, nodes: Sequence[ast.Node]) -> Iterator[frozenset[int]]:
-    """Yield the lines of all nodes, of halves, quarters and so on, down to single nodes."""
-    lines = [_lines(source, node) for node in nodes]
-    size = len(lines)
-    while size:
-        for first in range(0, len(lines), size):
-            yield frozenset().union(*lines[first : first + size])
-        size = size // 2 if size > 1 else 0
-
-
-def _frames(source: Source, block: ast.Node, inner: Sequence[ast.Node]) -> Iterator[frozenset[int]]:
-    """Yield the lines that frame a block, and each of its branches but the first."""
-    whole = _lines(source, block)
-    covered = frozenset().union(*(_lines(source, node) for node in inner))
-    frame = sorted(whole - covered)
-    yield frozenset(frame)
-    for first, end in pairwise(frame[1:]):
-        yield frozenset(range(first, end))
-
-
-# --------------------------------------------------------------------------------- expressions
 
 _CONSTANTS = ("0", "1", "TRUE", "FALSE", "1.0", '"A"')
 
