@@ -115,16 +115,21 @@ class Member:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Structure:
-    """A structure with its components in order; an open one may have others."""
+    """A structure with its components in order; an open one may have others.
+
+    ``places`` has the index of each component, counted from 0, by its name in upper case.
+    """
 
     name: str
     members: tuple[Member, ...]
     is_open: bool = False
-    _types: Mapping[str, Type] = field(init=False, repr=False)
+    places: Mapping[str, int] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        types = {member.name.upper(): member.type for member in reversed(self.members)}
-        object.__setattr__(self, "_types", types)
+        places: dict[str, int] = {}
+        for place, member in enumerate(self.members):
+            places.setdefault(member.name.upper(), place)
+        object.__setattr__(self, "places", places)
 
     def __str__(self) -> str:
         return self.name
@@ -138,12 +143,14 @@ class Structure:
         return hash(self.name.upper())
 
     def __contains__(self, name: str) -> bool:
-        return self.is_open or name.upper() in self._types
+        return self.is_open or name.upper() in self.places
 
     def member(self, name: str) -> Type | None:
         """Return the type of a component, or ``None`` if there is none with that name."""
-        found = self._types.get(name.upper())
-        return UNKNOWN if found is None and self.is_open else found
+        place = self.places.get(name.upper())
+        if place is None:
+            return UNKNOWN if self.is_open else None
+        return self.members[place].type
 
 
 def _is_equal(one: Structure, other: Structure) -> bool:
@@ -159,9 +166,12 @@ def _is_equal(one: Structure, other: Structure) -> bool:
             if left is right or pair in seen:
                 continue
             seen.add(pair)
-            if left.name.upper() != right.name.upper() or list(left._types) != list(right._types):
+            if left.name.upper() != right.name.upper() or left.places != right.places:
                 return False
-            todo += zip(left._types.values(), right._types.values(), strict=True)
+            todo += (
+                (left.members[place].type, right.members[place].type)
+                for place in left.places.values()
+            )
         elif left != right:
             return False
     return True

@@ -115,12 +115,12 @@ class StructureValue:
 
     def get(self, name: str) -> Value | None:
         """Return the member of that name; raise `KeyError` if there is none."""
-        found: Value | None = self.members[_places(self.type)[name.upper()]]
+        found: Value | None = self.members[self.type.places[name.upper()]]
         return found
 
     def set(self, name: str, value: Value | None) -> None:
         """Set a member, without converting or copying the value."""
-        self.members[_places(self.type)[name.upper()]] = value
+        self.members[self.type.places[name.upper()]] = value
 
 
 @dataclass(slots=True, eq=False)
@@ -193,15 +193,10 @@ def _sizes(type_: Array) -> tuple[int, ...]:
     return known_sizes
 
 
-@cache
-def _places(type_: Structure) -> Mapping[str, int]:
-    return {member.name.upper(): place for place, member in enumerate(type_.members)}
-
-
 def member_place(type_: Structure, name: str) -> int:
     """Return the index of a member, counted from 0; raise `LinkError` if there is none."""
     try:
-        return _places(type_)[name.upper()]
+        return type_.places[name.upper()]
     except KeyError:
         raise LinkError(f"{type_} has no component {name} that is known") from None
 
@@ -227,7 +222,7 @@ def position_type(names: frozenset[str]) -> Structure | None:
     for name in ("FRAME", "POS", "E3POS", "E6POS", "AXIS", "E3AXIS", "E6AXIS"):
         type_ = types[name]
         assert isinstance(type_, Structure), "as all positions"
-        if names <= _places(type_).keys():
+        if names <= type_.places.keys():
             return type_
     return None
 
@@ -384,7 +379,7 @@ def _fill_structure(target: StructureValue, value: StructureValue) -> None:
         names = {target.type.name.upper(), value.type.name.upper()}
         if not (names.issubset(CARTESIAN) or names.issubset(AXES)):
             raise fault("inadmissible")
-        places = _places(value.type)
+        places = value.type.places
         found = (places.get(member.name.upper()) for member in target.type.members)
         parts = [None if place is None else value.members[place] for place in found]
     for place, (member, part) in enumerate(zip(target.type.members, parts, strict=True)):

@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import takewhile
+from itertools import chain, takewhile
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
@@ -254,8 +254,11 @@ class _Reader:
             self._check(span, entry, is_shared=False)
             if not entry.get("name", "").strip():
                 raise self.error(start, "name is missing")
-            texts = entry.get("expect", [])
-            yield span, entry, [(str(text), self._line(str(text), span), None) for text in texts]
+            stated: list[_Stated] = []
+            for text in map(str, entry.get("expect", [])):
+                start = self._line(text, span, since=start)
+                stated.append((text, start, None))
+            yield span, entry, stated
 
     def _routines(self) -> Iterator[_Entry]:
         """Yield each routine TEST… with its lines and the expectations beside them.
@@ -373,13 +376,17 @@ class _Reader:
         for zone, text in value.items() if key == "zones" else ():
             self._made(span, zone, lambda _, it: read_expectation(f"avoids {it}", "", 0), text)
 
-    def _line(self, words: str, span: _Span) -> int:
-        """Return the line of a key or text, in a table or among the shared keys."""
+    def _line(self, words: str, span: _Span, since: int | None = None) -> int:
+        """Return the line of a key or text, in a table (first ``since``) or among the shared keys.
+
+        Where it is in none, return the line with which the search began.
+        """
         pattern = re.compile(rf"(?<![\w-]){re.escape(words)}(?![\w-])")
-        for number in (*range(span.start, span.end), *range(1, span.start)):
+        first = since or span.start
+        for number in chain(range(first, span.end), range(span.start, first), range(1, span.start)):
             if pattern.search(self._lines[number - 1].replace('\\"', '"')):
-                return int(number)
-        return span.start
+                return number
+        return first
 
     def error(self, line: int, what: str) -> TestFileError:
         return TestFileError(f"{self._path}:{line}: {' '.join(what.split())}")
