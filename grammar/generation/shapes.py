@@ -108,7 +108,7 @@ SHAPES: Final[Mapping[str, Shape]] = {
     "structures": _list("STRUC S{i} INT A,B,C\n"),
     "members of a structure": _list(",M{i}", head="GLOBAL STRUC S INT M"),
     "words of an ENUM": _list(",W{i}", head="GLOBAL ENUM E W"),
-    "signals": _list("SIGNAL S{i} $IN[{i}]\n"),
+    "signals": _list("SIGNAL S{i} $IN[7]\n"),
     # errors
     "lines that cannot be read": Shape("?? {i} ??\n"),
     "lines of one missing word": Shape("I 1\n"),
