@@ -16,7 +16,7 @@ import numpy.typing as npt
 from conformance.evaluation.laws import OVERRIDE, STOP, Deviations, Laws, Run, Subjects
 from conformance.evaluation.motions import Array, EndedMotion
 from conformance.evaluation.path_geometry import RATE_MARGIN, change_rates, rates_of
-from conformance.evaluation.programmed_paths import ProgrammedPath, programmed_paths
+from conformance.evaluation.programmed_paths import ProgrammedPath
 
 LAWS: Final = Laws()
 #: Those at an override of 100.
@@ -88,8 +88,7 @@ class _Pair:
 
 
 def _pairs(run: Run) -> Subjects[_Pair]:
-    has_blends = not all(one.stops for one in run.free)
-    paths = programmed_paths(run.free) if has_blends else ((one, None) for one in run.free)
+    paths = zip(run.free, run.programmed, strict=True)
     for (one, way), (other, further) in pairwise(paths):
         if other.follows(one):
             yield one.event, _Pair(one, other, way, further)

@@ -17,6 +17,7 @@ from typing import Any, Final, TypeVar
 
 from conformance.evaluation.motions import EndedMotion, ended
 from conformance.evaluation.observation import Event, Observation
+from conformance.evaluation.programmed_paths import ProgrammedPath, programmed_paths
 from interp.robot.kinematics.machine_data import MachineData
 from interp.robot.simulation.tracking import PathRecord
 
@@ -54,6 +55,13 @@ class Run:
     def free(self) -> tuple[EndedMotion, ...]:
         """Those of its motions that nothing has held."""
         return tuple(one for one in self.motions if not one.is_held)
+
+    @cached_property
+    def programmed(self) -> tuple[ProgrammedPath | None, ...]:
+        """The programmed paths of those, as far as they are known; none if nothing is blended."""
+        if all(one.stops for one in self.free):
+            return (None,) * len(self.free)
+        return tuple(programmed_paths(self.free))
 
 
 _S = TypeVar("_S")

@@ -44,10 +44,8 @@ class ProgrammedPath:
         return float(self.sums[place] + shares[place] * np.diff(self.sums)[place])
 
 
-def programmed_paths(
-    motions: Sequence[EndedMotion],
-) -> Iterator[tuple[EndedMotion, ProgrammedPath | None]]:
-    """Yield each motion with its programmed path, ``None`` if that is not completely numeric."""
+def programmed_paths(motions: Sequence[EndedMotion]) -> Iterator[ProgrammedPath | None]:
+    """Yield the programmed path of each motion, ``None`` if that is not completely numeric."""
     axes: Array | None = None
     point: Array | None = None
     placement = None
@@ -62,7 +60,7 @@ def programmed_paths(
         origin, point = point, _point(one, one.motion.target, point)
         if axes is not None:
             point = one.points(axes[None])[0]
-        yield one, _path(one, start, axes, origin, point)
+        yield _path(one, start, axes, origin, point)
 
 
 def _path(
