@@ -48,15 +48,11 @@ _NAMES = frozenset({ast.Variable, ast.Member})
 
 
 class TypeChecker:
-    """Infers the types of the expressions of one file; ``diagnostics`` are the mismatches.
-
-    ``misindexed`` are the variables that have been found with a wrong number of indices.
-    """
+    """Infers the types of the expressions of one file; ``diagnostics`` are the mismatches."""
 
     def __init__(self, context: Context, rules: Mapping[type[Any], Rule]) -> None:
         self.context = context
         self.diagnostics: list[Diagnostic] = []
-        self.misindexed: set[Symbol | None] = set()
         self._rules = rules
         self._types = context.types
         self._declared = context.project.types

@@ -94,10 +94,7 @@ def _subscript(checker: TypeChecker, node: ast.Subscript, _expected: Type) -> Ty
                 checker.report("real-index", given, "an index is an INT, and this is a REAL")
     typed = subscript(base, [given is not None for given in node.indices])
     if not typed.verdict:
-        root = checker.root_symbol(node)
-        if root is None or root not in checker.misindexed:  # its declaration may be the mistake
-            checker.reject("wrong-indices", node, typed.verdict)
-        checker.misindexed.add(root)
+        checker.reject("wrong-indices", node, typed.verdict)
     elif isinstance(base, Array):
         _check_range(checker, node, base)
     elif base == UNKNOWN:

@@ -17,7 +17,7 @@ app = Commands(help="Measure the tools themselves.")
 for _command in (
     *(mutation, vm, arm, programs, conform, fuzz, real_code, recover, check, growth, scale),
 ):
-    app.command()(_command)
+    app.command(_command.__name__.replace("_", "-"))(_command)
 
 
 @app.callback()

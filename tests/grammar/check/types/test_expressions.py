@@ -69,8 +69,3 @@ def test_an_expression_may_be_as_deep_as_it_can_be_read(agrees: Agrees) -> None:
     text = program(f"I = {nested}", f"I = {indexed}", f"I = {summed}", f"B = {decided}")
     assert not isinstance(read_module(text), list)
     agrees(text)
-
-
-def test_wrong_indices_are_told_once_for_a_variable(agrees: Agrees) -> None:
-    """Its declaration may have lost its size."""
-    agrees(program("R[1] = 1.5 ;> KSS2295", "R[2] = 2.5", "LIST[1,2] = 3 ;> KRL203"))
