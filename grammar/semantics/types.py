@@ -166,15 +166,17 @@ def _is_equal(one: Structure, other: Structure) -> bool:
             if left is right or pair in seen:
                 continue
             seen.add(pair)
-            if left.name.upper() != right.name.upper() or left.places != right.places:
+            if _names(left) != _names(right):
                 return False
-            todo += (
-                (left.members[place].type, right.members[place].type)
-                for place in left.places.values()
-            )
+            members = zip(left.members, right.members, strict=True)
+            todo += ((member.type, other.type) for member, other in members)
         elif left != right:
             return False
     return True
+
+
+def _names(type_: Structure) -> list[str]:
+    return [name.upper() for name in (type_.name, *(member.name for member in type_.members))]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

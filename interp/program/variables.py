@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import cache
+from functools import lru_cache
 
 from grammar.semantics.scopes import Found
 from grammar.semantics.symbols import Kind, SignalSymbol
@@ -22,8 +22,11 @@ from interp.values.faults import LinkError
 #: The largest number of scalars in all variables of a program together.
 MOST_CELLS = 1 << 20
 
+#: The number of types whose answers are kept, far more than a program has.
+_REMEMBERED = 1 << 14
 
-@cache
+
+@lru_cache(_REMEMBERED)
 def is_complete(type_: Type) -> bool:
     """Return whether a variable can have a type: all its members and array sizes are known."""
     match type_:
@@ -35,7 +38,7 @@ def is_complete(type_: Type) -> bool:
             is_known = all(is_complete(one.type) for one in members)
             return is_known and _are_distinct([one.name for one in members])
         case Array(element=element, sizes=sizes):
-            is_known = 1 <= len(sizes) <= 3 and all(size for size in sizes)
+            is_known = 1 <= len(sizes) <= 3 and all(size is not None and size > 0 for size in sizes)
             return is_known and is_complete(element) and not isinstance(element, Array)
     return False
 
@@ -51,7 +54,7 @@ def is_complete_parameter(type_: Type) -> bool:
     )
 
 
-@cache
+@lru_cache(_REMEMBERED)
 def cells(type_: Type) -> int:
     """Return the number of scalars in a variable; a part of unknown type or size counts as 1."""
     match type_:

@@ -62,10 +62,10 @@ class _Writer:
 
     def _data(self) -> Iterator[str]:
         program, found = self._program, self._names.data.labels
-        pairs = groupby(program.initial, lambda pair: program.data_at(pair[0]))
+        groups = groupby(program.initial, lambda pair: program.data_at(pair[0]))
         initial = {
             number: [(address - program.addresses[number or 0], word) for address, word in pairs]
-            for number, pairs in pairs
+            for number, pairs in groups
         }
         for number, one in enumerate(program.data):
             word = "global" if one.is_global else "data"

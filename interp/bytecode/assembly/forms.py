@@ -133,14 +133,21 @@ def _one_of(words: Mapping[str, Any], otherwise: str) -> Form:
 
 
 def _numbered(form: Form) -> Form:
-    """Return a form that may also be read as a number."""
+    """Return a form that may also be read as a number, ``#5``."""
+    return Form(
+        lambda names, line: line.integer() if line.found("#") else form.read(names, line),
+        form.text,
+    )
 
-    def read(names: Names, line: Line) -> Any:
-        if line.found("#") or line.has("int"):
-            return line.integer()
-        return form.read(names, line)
 
-    return Form(read, form.text)
+def _bare(form: Form) -> Form:
+    """Return a form that may also be read as a number, ``#5`` or ``5``."""
+    return _numbered(
+        Form(
+            lambda names, line: line.integer() if line.has("int") else form.read(names, line),
+            form.text,
+        )
+    )
 
 
 # -------------------------------------------------------------------------------- words
@@ -150,7 +157,7 @@ _INTEGER = _numbered(_simple(Line.integer, str))
 _REAL = _numbered(_simple(Line.real, real_text))
 _NAME = _simple(Line.name, name_text)
 _STRING = _simple(Line.string, string_text)
-_FLAG = _numbered(_one_of({"FALSE": 0, "TRUE": 1}, "{} is neither TRUE nor FALSE"))
+_FLAG = _bare(_one_of({"FALSE": 0, "TRUE": 1}, "{} is neither TRUE nor FALSE"))
 _MODE = _one_of({mode.value: mode for mode in Mode}, "{} is no part of a request")
 _FAULT = _numbered(
     _one_of({slug: kind.code for slug, kind in FAULTS.items()}, "there is no fault {}")
@@ -177,7 +184,7 @@ def _letter(line: Line) -> int:
     return ord(letter)
 
 
-_LETTER = _numbered(_simple(_letter, lambda letter: string_text(chr(letter))))
+_LETTER = _bare(_simple(_letter, lambda letter: string_text(chr(letter))))
 
 
 def _dimensions(line: Line) -> int:
@@ -260,7 +267,7 @@ def _read_place(line: Line) -> int:
 
 _PART = Form(_read_part, lambda names, part: _PARTS[part_kind(part)].text(names, part))
 _LIST = _many(_PART)
-_PATH = _record(Items, Form(_LIST.read, lambda *parts: _LIST.text(*parts)[1:]), ")")
+_PATH = _record(Items, Form(_LIST.read, lambda names, parts: _LIST.text(names, parts)[1:]), ")")
 _INPUT = _record(Input, _MODE, ":", _TYPE, _DIMENSIONS)
 _CHANGED = _record(Changed, _INPUT, "=", _maybe("@", _COUNT), _maybe("(", _PATH))
 _FIXED = {"nil": Constant(None), "FALSE": Constant(False), "TRUE": Constant(True)}
@@ -297,8 +304,8 @@ _STARTS: Mapping[str, object] = {
 def _word(kind: Type) -> Form:
     """Return the form of the contents of a cell."""
     if isinstance(kind, Enumeration):
-        return _numbered(_marked("!", _constant(kind)))
-    return _REAL if kind == REAL else _FLAG if kind == BOOL else _INTEGER
+        return _bare(_marked("!", _constant(kind)))
+    return _bare(_REAL) if kind == REAL else _FLAG if kind == BOOL else _INTEGER
 
 
 def _values(type_: Type) -> Form:
@@ -343,8 +350,10 @@ def _values(type_: Type) -> Form:
 
 
 def _imported(line: Line) -> tuple[str, ...]:
-    names = line.label(2).names
-    return (*names, line.name()) if line.found(".") else names
+    names = [line.name()]
+    line.expect(".")
+    names.append(line.name())
+    return (*names, line.name()) if line.found(".") else tuple(names)
 
 
 # -------------------------------------------------------------------------------- lines
@@ -408,7 +417,7 @@ def _cell(kind: str, *, is_typed: bool) -> _Piece:
         area = names.tables[kind]
         assert isinstance(area, Area), "both kinds are of cells"
         wanted = names.types[values[1]] if is_typed and len(values) > 1 else None
-        return _numbered(
+        return _bare(
             Form(lambda _, line: area.address(line), lambda _, cell: area.text(cell, wanted))
         )
 

@@ -144,7 +144,7 @@ class Names:
 
     def type_at(self, number: int) -> Type:
         """Return the type with a number; raises `LinkError` if there is none."""
-        if number >= len(self.types):
+        if not 0 <= number < len(self.types):
             raise LinkError(f"there is no type #{number}")
         return self.types[number]
 

@@ -117,7 +117,7 @@ class ControlCore:
     def next_time(self) -> int | None:
         """Return the time of the next event by the present plan; ``None`` if there is none."""
         ahead = self.arm.next_event()
-        times = [time for time, *_ in self._due]
+        times = [self._due[0][0]] if self._due else []
         if ahead is not None:
             times.append(ahead.time)
         return min(times, default=None)
@@ -230,7 +230,7 @@ class ControlCore:
             self._act_when_due()
 
     def _is_due(self, time: int) -> bool:
-        return any(due <= time for due, *_ in self._due)
+        return bool(self._due) and self._due[0][0] <= time
 
     def _act_when_due(self) -> None:
         _, _, effect, command = heapq.heappop(self._due)

@@ -137,6 +137,8 @@ class PathExecution:
         Each has its state, its time, and the remaining route.
         """
         places = {section.key: place for place, section in enumerate(route)}
+        if leg.section.key not in places:
+            return
         yield leg.state(time), time, tuple(route[places[leg.section.key] :])
         for each in (leg, *self._timeline.after(leg)):
             place = places.get(each.section.key)

@@ -49,9 +49,9 @@ def schedule(
 ) -> Schedule | None:
     """Return the schedule from a state to standstill at the end of the last stretch.
 
-    If ``is_strict``, one that leaves spans too fast is not made as good as can be.
-    Return ``None`` if that is impossible: the acceleration cannot be reduced in time, or the end is
-    too near to stop there.
+    If ``is_strict``, no blend is slowed down for the sake of a span that is left too fast. Return
+    ``None`` if there is no schedule: the acceleration cannot be reduced in time, or the end is too
+    near to stop there.
     """
     if not stretches:
         return Schedule([], 0.0)

@@ -307,6 +307,9 @@ def test_types_are_made_of_types_before_them() -> None:
     refused(replace(good, types=(*good.types, far)), "types that are not defined before it")
     refused(replace(good, types=(*good.types, Array(far.element, (None,)))), "not defined before")
     refused(replace(good, types=(*good.types, Structure("NONE", ()))), "no variable can be of")
+    twice = Structure("STRANGE", (*strange.members, strange.members[0]))
+    refused(replace(good, types=(*good.types, twice)), "no variable can be of")
+    refused(replace(good, types=(*good.types, Array(good.types[0], (-1,)))), "no variable can")
 
 
 def test_huge_arrays_are_refused() -> None:
