@@ -191,7 +191,7 @@ def _never(row: Row) -> str:
     """Return the rule by which the end of the motion that is left is not reached."""
     if row["act"] == "resume_deep":
         return "INT-08.b"
-    return "INT-10" if row["when"] == min(FEATURES["when"]) else "INT-18"
+    return "INT-12" if row["when"] == min(FEATURES["when"]) else "INT-18"
 
 
 def _bare(text: str) -> str:

@@ -60,6 +60,10 @@ def _marks(motion: Motion) -> Iterator[_Mark]:
 
 def _constant(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
     ends = np.cumsum([0.0, *(_length(piece) for piece in pieces)])
+    programmed = [
+        _length(piece) * min(stretch.programmed for stretch in piece.limits.stretches)
+        for piece in pieces
+    ]
     start: float | None = None
     for number, mark in marks:
         segment = min(number + (not mark.on_start), len(pieces))
@@ -67,13 +71,20 @@ def _constant(pieces: Pieces, marks: Sequence[_Mark]) -> Pieces:
         if mark.edge == "START":
             start = place
         elif start is not None:
-            pieces = _kept(pieces, ends, start, place)
+            pieces = _kept(pieces, programmed, ends, start, place)
             start = None
-    return pieces if start is None else _kept(pieces, ends, start, float(ends[-1]))
+    if start is None:
+        return pieces
+    return _kept(pieces, programmed, ends, start, float(ends[-1]))
 
 
-def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
-    """Return the pieces with one programmed speed between two positions along the path."""
+def _kept(
+    pieces: Pieces, programmed: Sequence[float], ends: Array, start: float, end: float
+) -> Pieces:
+    """Return the pieces with one speed between two positions along the path.
+
+    It is the lowest of those that the program gives these pieces, whatever other ranges made of it.
+    """
     inside = [
         number
         for number in range(len(pieces))
@@ -83,11 +94,7 @@ def _kept(pieces: Pieces, ends: Array, start: float, end: float) -> Pieces:
         return pieces
     if any(pieces[number].junction == STOP and ends[number] > start for number in inside):
         raise _broken(3215, "the speed falls to zero in a range of constant speed")
-    speed = min(
-        stretch.programmed * _length(pieces[number])
-        for number in inside
-        for stretch in pieces[number].limits.stretches
-    )
+    speed = min(programmed[number] for number in inside)
     changed = list(pieces)
     edges = []
     for number in inside:
