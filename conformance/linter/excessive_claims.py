@@ -32,6 +32,10 @@ _CLAUSE_WORDS: Final = {
 }
 #: Topics whose rules are about no time, where they mention neither seconds nor the advance run.
 _TIMELESS: Final = frozenset("TYP ARI FCT SCO MSG POS ORI CON".split())
+#: Clauses that say when something is done, not what value it gives nor how long it takes.
+_MOMENTS: Final = frozenset("ADV-01 ADV-02.a ADV-04 ADV-05 ADV-06 ADV-07.a ADV-08 ADV-09".split())
+#: Seconds behind an event that are a cycle of tolerance rather than a duration.
+_CYCLES: Final = 0.05
 #: A line that asks for the number of the last error, and one after which that number is another.
 _ASKED: Final = re.compile(r"=.*\$ERR\.NUMBER", re.IGNORECASE)
 _CLEARED: Final = re.compile(
@@ -74,12 +78,18 @@ def _of_clauses(case: Case) -> Iterator[str]:
             is_meant = one.text.startswith(begins)
             if is_meant and not any(word in clause.statement for word in words.split()):
                 yield f"line {one.line}: {clause.id} says nothing of {one.text!r}"
+        if clause.id in _MOMENTS and (one.kind in ("value", "values") or _has_duration(one)):
+            yield f"line {one.line}: {clause.id} gives neither values nor durations: {one.text!r}"
         if one.kind == "lasts":
             yield f"line {one.line}: no rule says how long a motion takes, only how long at least"
         if one.when and (why := _untimed(clause, one, one.when)):
             yield f"line {one.line}: {why} for {one.text!r}"
         for number in sorted(_messages_of(case, one) - _numbers_in(clause.statement)):
             yield f"line {one.line}: {clause.id} does not say that {number} is the message"
+
+
+def _has_duration(one: Expectation) -> bool:
+    return one.when is not None and one.when.first.seconds > _CYCLES
 
 
 def _untimed(clause: Rule | Clause, one: Expectation, when: When) -> str:

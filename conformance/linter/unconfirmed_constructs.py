@@ -51,6 +51,7 @@ _FORMS: Final = frozenset(
         "SCO-07.b",
         "SCO-13.d",
         "SPL-01.b",
+        "SPL-07.b",
         "SPL-10",
         "TRG-10.e",
         "TRG-13.b",
@@ -125,8 +126,16 @@ def _of_nodes(source: Source, tree: ast.Module, functions: set[str]) -> Iterator
             clause = "SCO-13.d" if node.name.key in system.functions else ""
         elif isinstance(node, ast.Assignment) and isinstance(node.value, ast.Aggregate):
             clause = "TYP-13.d" if _lacks_some(node, node.value) else ""
+        elif isinstance(node, ast.SplineBlock):
+            clause = "SPL-07.b" if _ends_without_segment(node) else ""
         if clause:
             yield Doubt(source.path, source.place(node.span[0])[0], clause)
+
+
+def _ends_without_segment(block: ast.SplineBlock) -> bool:
+    """Return whether the last item of a block counts from a point behind it that there is not."""
+    places = ast.Trigger | ast.ConstantVelocity | ast.StopWhen
+    return bool(block.items) and isinstance(block.items[-1], places)
 
 
 def _lacks_some(node: ast.Assignment, value: ast.Aggregate) -> bool:

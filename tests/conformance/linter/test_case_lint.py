@@ -13,6 +13,7 @@ from conformance.suite.rule_coverage import coverage
 GOOD = ";@ rule: CTL-01\n;@ title: a fact\n;@ phase: run\nDEF good()\n  HALT ;> runs 1\nEND\n"
 _SIZE = "$APO.CDIS = 1\n  "
 _TRIGGER = "TRIGGER WHEN DISTANCE=0 DELAY=0 DO $FLAG[1]=TRUE"
+_BLOCK = "SPLINE ;> runs 1\n    SPL {{X 1}}\n    {}\n  ENDSPLINE"
 
 
 def citing(rule: str, expected: str) -> str:
@@ -109,6 +110,10 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
                 ("interrupt", "INT-05", "line at in 1", "the latency of an interrupt is not known"),
                 ("advance", "ADV-01", "planned at start 2", "depends on the computing power"),
                 ("advance", "ADV-05", "line at end 2", "depends on the computing power"),
+                ("advance", "ADV-05", "line after end 2 + 0.3", "neither values nor durations"),
+                ("advance", "ADV-05", "value N 1", "neither values nor durations"),
+                ("advance", "ADV-05", "line after end 2 - 0.01", ""),
+                ("advance", "ADV-10", "value N 1", ""),
                 ("blending", "BLD-01.a", "blends", "BLD-01.a says nothing of"),
                 ("types", "TYP-09", "line at 0.5", "TYP-09 gives no time"),
             )
@@ -157,6 +162,8 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
                 (_SIZE + "SLIN {X 1} C_SPL ;> apex\n  WAIT SEC 0\n  SPTP {A1 1}", ""),
                 (f"{_TRIGGER}\n  SLIN {{X 1}} ;> runs 1", "good.src:5: only TRG-10.e allows it"),
                 (f"{_TRIGGER}\n  LIN {{X 1}} ;> runs 1", ""),
+                (_BLOCK.format("CONST_VEL END=0"), "good.src:5: only SPL-07.b allows it"),
+                (_BLOCK.format("CONST_VEL END=0\n  SPL {X 2}"), ""),
                 ("TRIGGER WHEN PATH=0 DELAY=0 DO good() PRIO=N ;> trigger", "only TRG-13.b allows"),
                 ("TRIGGER WHEN PATH=0 DELAY=0 DO good() PRIO=-1 ;> trigger", ""),
                 ("LIN {X 1} C_DIS\n  LIN_REL {X 1} ;> pose 1 2 3", "good.src:6: only MOT-14.b"),
