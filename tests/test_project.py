@@ -195,6 +195,13 @@ def test_documents_name_what_there_is(document: Path) -> None:
         assert any(re.search(rf"\b{name}\b", path.read_text(encoding="utf-8")) for path in found)
     for name in re.findall(rf"`((?:{'|'.join(PACKAGES)})(?:\.\w+){{2,}})`", text):
         resolve_name(name)
+    places = re.findall(
+        rf"`((?:{'|'.join([*PACKAGES, 'corpus', 'docs', 'tests'])})/[\w./-]+)`", text
+    )
+    written = re.compile(
+        r"reports/(out|history)|corpus/open|.*[A-Z]{4}"
+    )  # by commands; stands for any
+    assert set() == {one for one in places if not ((ROOT / one).exists() or written.match(one))}
     links = set(re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text))
     assert set() == {link for link in links if not (document.parent / link).exists()}
 
