@@ -128,7 +128,9 @@ def test_commands_of_documents_have_their_options() -> None:
 def test_python_of_documents_imports_what_there_is(place: str) -> None:
     """It is Python, and its imports from the workbench can be made."""
     tree = ast.parse(_of_language("python")[place])
-    imports = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
+    imports: list[ast.stmt] = [
+        node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)
+    ]
     exec(compile(ast.Module(imports, []), place, "exec"), {})
 
 
