@@ -13,13 +13,15 @@ from dataclasses import replace
 
 from grammar.comparison.content import Content, RoutineText
 from grammar.comparison.matching import line_operations
+from grammar.diagnostics.expected_tokens import is_reserved
 
 _NAME = re.compile(r'"[^"]*"|([$A-Z_][\w$]*)')
 
 
 def names_in(content: Content) -> set[str]:
-    """Return the names in a file, in upper case."""
-    return {name for key in _keys(content) for name in _NAME.findall(key) if name}
+    """Return the names in a file that can be changed, in upper case: no keywords, no `$` names."""
+    names = {name for key in _keys(content) for name in _NAME.findall(key)}
+    return {name for name in names if name and name[0] != "$" and not is_reserved(name)}
 
 
 def _keys(content: Content) -> Iterator[str]:

@@ -75,6 +75,16 @@ def test_the_command_line_stands_above_the_settings(cell: Path, codes: Codes) ->
     assert A + B == codes("cell", "--no-settings")
 
 
+def test_what_is_excluded_alone_cannot_be_checked(
+    cell: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One sentence and status 2."""
+    (cell / "krl.toml").write_text('exclude = ["a.src"]', encoding="utf-8")
+    path = next(cell.rglob("a.src"))
+    assert 2 == main(["check", "--no-cache", str(path)])
+    assert f"krl: {path}: krl.toml excludes all that is to be checked\n" == capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("settings", "said"),
     [

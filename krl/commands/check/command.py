@@ -14,7 +14,7 @@ from krl.baseline_file import baseline_place, read_baseline
 from krl.commands.check.output import Format, sum_up, write
 from krl.errors import FINDINGS, FINE, InputError, as_input_errors, say
 from krl.extras import expected_extras
-from krl.project_settings import Settings, read_settings, settings_of, settings_places
+from krl.project_settings import FILE_NAME, Settings, read_settings, settings_of, settings_places
 from krl.terminal.options import JobsOption
 from krl.terminal.output_files import check_files, write_json
 from krl.terminal.progress import progress_bar
@@ -257,6 +257,8 @@ class _Check:
                 on_done=bar,
             )
         if not report.files:
+            if not report.skipped:
+                raise InputError(f"{self.paths[0]}: {FILE_NAME} excludes all that is to be checked")
             first = report.skipped[0]
             raise InputError(f"{first.path}: {first.reason}")
         return report

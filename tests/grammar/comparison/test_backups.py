@@ -109,6 +109,22 @@ def test_a_name_changed_throughout_is_reported_once() -> None:
     assert [] == lines(found)
 
 
+@pytest.mark.parametrize(
+    ("was", "now"),
+    [
+        ("$OUT[1] = TRUE", "$OUT[1] = FALSE"),
+        ("LIN XP1", "PTP XP1"),
+        ("$OUT[1] = X", "$FLAG[1] = X"),
+    ],
+)
+def test_keywords_and_system_variables_are_no_changed_names(was: str, now: str) -> None:
+    """They mean something else then, also if each of them was changed: the statement is told."""
+    old, new = (Source(f"DEF A( )\n{line}\nEND\n", "R1/a.src") for line in (was, now))
+    found = compare([old], [new])
+    assert [] == found["names"]
+    assert [([was], [now])] == lines(found)
+
+
 def test_the_folder_of_a_controller_is_no_part_of_a_path() -> None:
     """Two robots get other folders: none of their files moved, and each is compared with itself."""
     texts = {robot: MAIN.replace("$OUT[3]", f"$OUT[{robot}]") for robot in "12"}
