@@ -45,6 +45,7 @@ _SPACES: Final = {"PTP": "older", "LIN": "older", "CIRC": "older", "SPTP": "axes
 #: Clauses that allow a form: where they are wrong, a controller does not take the program at all.
 _FORMS: Final = frozenset(
     {
+        "BLD-06.b",
         "CTL-09.b",
         "FCT-12.d",
         "INT-06.c",
@@ -170,9 +171,11 @@ def _of_row(source: Source, body: Sequence[ast.Node]) -> Iterator[Doubt]:
             if isinstance(last, ast.OnErrorProceed) and source.place(last.span[0])[0] == line - 1:
                 yield Doubt(source.path, line, "FCT-12.d")
             if isinstance(before, ast.Motion) and before.criteria:
+                there = source.place(before.span[0])[0]
                 if _space(before) != _space(node):
-                    there = source.place(before.span[0])[0]
                     yield Doubt(source.path, there, "BLD-12", _BLEND, behind=False)
+                if before.criteria == ("C_PTP",) and not _is_of_axes(node):
+                    yield Doubt(source.path, there, "BLD-06.b", _BLEND, behind=False)
                 is_relative |= _is_relative(node)
             if is_relative and not _is_absolute(node):
                 yield Doubt(source.path, line, "MOT-14.b", _PLACES, behind=False)
@@ -195,6 +198,11 @@ def _space(node: ast.Motion | ast.SplineBlock) -> str:
     kind = node.keyword if isinstance(node, ast.SplineBlock) else node.kind
     kind = kind.removesuffix("_REL").replace("PTP_SPLINE", "SPTP")
     return _SPACES.get(kind, "path")
+
+
+def _is_of_axes(node: ast.Motion | ast.SplineBlock) -> bool:
+    kind = node.keyword if isinstance(node, ast.SplineBlock) else node.kind
+    return "PTP" in kind
 
 
 def _is_relative(node: ast.Motion | ast.SplineBlock) -> bool:
