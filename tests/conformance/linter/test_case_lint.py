@@ -172,6 +172,11 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
                     _SIZE + "LIN {X 1} C_DIS\n  LIN_REL {X 1}\n  LIN {X 1, Y 2, Z 3} ;> pose 1 2 3",
                     "",
                 ),
+                ("LIN {X 1} C_DIS C_VEL\n  HALT ;> runs 1", "good.src:5: only BLD-06.b allows it"),
+                (_SIZE + "LIN {X 1} C_DIS C_DIS\n  LIN {Y 1} ;> runs 1", ""),
+                ("PTP {A1 1} C_PTP ;> blends\n  LIN {X 1}", "good.src:5: only BLD-06.b allows it"),
+                ("PTP {A1 1} C_PTP C_DIS\n  LIN {X 1} ;> start", "of $APO.CPTP"),
+                ("N = $ERR.NUMBER ;> value N 5", "line 5: what $ERR.NUMBER holds is FCT-12"),
                 ("LIN {X 1}\n  R = $POS_ACT.X ;> value R 1.0", "good.src:6: only ADV-07.b"),
                 ("LIN {X 1}\n  WAIT SEC 0\n  $TIMER[1] = $POS_ACT.X ;> value $TIMER[1] 1", ""),
             )
