@@ -17,11 +17,16 @@ from conformance.suite.registry import Clause, Rule, basis, registry
 from grammar.semantics.predefined import System
 from grammar.semantics.types import Structure
 
+#: Words of clauses that give a place, or leave it as it is.
+_PLACES: Final = "target end begins goes stay driven ignored effect angle flange alone WITH points"
 #: For expectations with these beginnings, words of which the clause they rest on must have one.
 _CLAUSE_WORDS: Final = {
     "path line": "line",
     "path circle": "circle CIRC",
     "path joint": "axes",
+    "pose": _PLACES,
+    "axes": _PLACES,
+    "passes": _PLACES,
     "speed": "velocity speed acceleration VEL Parameters",
     "blends": "approximated blend CONTINUE",
     "smooth": "velocity speed acceleration",

@@ -171,11 +171,7 @@ def _of_row(source: Source, body: Sequence[ast.Node]) -> Iterator[Doubt]:
             if isinstance(last, ast.OnErrorProceed) and source.place(last.span[0])[0] == line - 1:
                 yield Doubt(source.path, line, "FCT-12.d")
             if isinstance(before, ast.Motion) and before.criteria:
-                there = source.place(before.span[0])[0]
-                if _space(before) != _space(node):
-                    yield Doubt(source.path, there, "BLD-12", _BLEND, behind=False)
-                if before.criteria == ("C_PTP",) and not _is_of_axes(node):
-                    yield Doubt(source.path, there, "BLD-06.b", _BLEND, behind=False)
+                yield from _of_blend(source, before, node)
                 is_relative |= _is_relative(node)
             if is_relative and not _is_absolute(node):
                 yield Doubt(source.path, line, "MOT-14.b", _PLACES, behind=False)
@@ -198,6 +194,17 @@ def _space(node: ast.Motion | ast.SplineBlock) -> str:
     kind = node.keyword if isinstance(node, ast.SplineBlock) else node.kind
     kind = kind.removesuffix("_REL").replace("PTP_SPLINE", "SPTP")
     return _SPACES.get(kind, "path")
+
+
+def _of_blend(
+    source: Source, before: ast.Motion, node: ast.Motion | ast.SplineBlock
+) -> Iterator[Doubt]:
+    """Yield what the blend between two motions rests on."""
+    there = source.place(before.span[0])[0]
+    if _space(before) != _space(node):
+        yield Doubt(source.path, there, "BLD-12", _BLEND, behind=False)
+    if before.criteria == ("C_PTP",) and not _is_of_axes(node):
+        yield Doubt(source.path, there, "BLD-06.b", _BLEND, behind=False)
 
 
 def _is_of_axes(node: ast.Motion | ast.SplineBlock) -> bool:

@@ -115,6 +115,8 @@ def test_known_failures_are_about_cases(own_cases: list[Case]) -> None:
                 ("advance", "ADV-05", "line after end 2 - 0.01", ""),
                 ("advance", "ADV-10", "value N 1", ""),
                 ("blending", "BLD-01.a", "blends", "BLD-01.a says nothing of"),
+                ("motion", "MOT-09", "pose 1 2 3", "MOT-09 says nothing of"),
+                ("motion", "MOT-10", "axes 1 2 3", "MOT-10 says nothing of"),
                 ("types", "TYP-09", "line at 0.5", "TYP-09 gives no time"),
             )
         ),
