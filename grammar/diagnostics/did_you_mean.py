@@ -29,7 +29,7 @@ def nearest(name: str, names: Iterable[str], most: int = _MOST_SHOWN) -> list[st
 
 
 def _ranked(name: str, names: Iterable[str]) -> list[tuple[int, int, str]]:
-    """Return the near names sorted by distance, then by the length of the common beginning."""
+    """Return the near names by distance, then by length of the common beginning, then as given."""
     wanted = name.upper()
     if not wanted or len(wanted) > _LONGEST_NAME:
         return []
@@ -42,7 +42,7 @@ def _ranked(name: str, names: Iterable[str]) -> list[tuple[int, int, str]]:
         distance = edit_distance(wanted, key, slips)
         if 0 < distance <= slips and distance < len(wanted):
             found.append((distance, -_common_start(wanted, key), candidate))
-    return sorted(found)
+    return sorted(found, key=lambda one: one[:2])
 
 
 def did_you_mean(name: str, names: Iterable[str], mark: str = "") -> Fix | None:

@@ -14,6 +14,7 @@ from grammar.blocks import BLOCKS, BRANCHES, CLOSERS
 from grammar.syntax.source import Source
 from support.lazy_dataclass import dataclass
 
+_COUNTER = re.compile(r"[ \t]*FOR[ \t]+(\w+)", re.IGNORECASE)
 _LEAD = re.compile(r"[ \t]*(?:GLOBAL[ \t]+)?([A-Za-z_]+)", re.IGNORECASE | re.ASCII)
 
 
@@ -65,7 +66,7 @@ def most_likely(source: Source, block: OpenBlock, end: int) -> tuple[OpenBlock, 
 
     The first words only show that a block of this kind is open. If closing words are indented like
     the lines that they close, indentation shows which block it is. The block then ends before the
-    first line that is indented less than its body.
+    first line that is indented less than its body. A FOR ends before another one with its counter.
     """
     inside = source.lines[block.line - 1 : end - 1]
     opened: list[tuple[str, int]] = []
@@ -92,6 +93,9 @@ def most_likely(source: Source, block: OpenBlock, end: int) -> tuple[OpenBlock, 
 def _end_by_indent(source: Source, block: OpenBlock, end: int) -> int:
     """Return the first line after the body of a block, judged by indentation; else ``end``."""
     indent = _indent(source, block.line)
+    if counter := _counter(source, block.line):
+        later = range(block.line + 1, end)
+        end = next((number for number in later if _counter(source, number) == counter), end)
     is_indented = False
     for number in range(block.line + 1, end):
         text = source.line(number).lstrip()
@@ -103,6 +107,12 @@ def _end_by_indent(source: Source, block: OpenBlock, end: int) -> int:
         elif depth < indent or BRANCHES.get(lead(text)) != block.word:
             return number if is_indented else end
     return end
+
+
+def _counter(source: Source, line: int) -> str:
+    """Return the counter of the FOR on a line, in upper case; empty if there is none."""
+    found = _COUNTER.match(source.line(line))
+    return found[1].upper() if found else ""
 
 
 def _indent(source: Source, line: int) -> int:

@@ -12,7 +12,7 @@ names have the same prefix.
 from __future__ import annotations
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from enum import Enum
 
@@ -32,7 +32,7 @@ _SHORTEST_TO_END = 6
 # Prefixes with which inline forms name the data of a point: XP1, FP1.
 _OF_POINTS = frozenset("XF")
 # A prefix that tells the kind of a name: gnPart, a global number; IPO_MODE, APO_MODE.
-_PREFIX = re.compile(r"[a-z]+(?=[A-Z])|[A-Z]{1,3}_")
+_PREFIX = re.compile(r"[a-z]+(?=[A-Z])|[A-Za-z]{1,3}_")
 
 
 class Series(Enum):
@@ -67,15 +67,15 @@ class Typos:
         self._names: dict[str, tuple[str, Series]] = {} if known is None else known._names.copy()
         self._known: Mapping[str, Sequence[str]] = {} if known is None else known._keys
         self._keys: defaultdict[str, list[str]] = defaultdict(list)
-        self.prefixes: set[str] = set() if known is None else known.prefixes.copy()
+        self.prefixes: Counter[str] = Counter() if known is None else known.prefixes.copy()
         self.add(names, series)
 
     def add(self, names: Iterable[str], series: Series) -> None:
         """Add names. Letter case is ignored; the first spelling of a name is kept."""
         for name in names:
             key = name.upper()
-            self.prefixes.add(prefix_of(name))
             if key not in self._names and self._shortest <= len(key) <= _LONGEST:
+                self.prefixes[prefix_of(name)] += 1
                 self._names[key] = name, series
                 for shorter in _shortened(key):
                     self._keys[shorter].append(key)
@@ -111,9 +111,12 @@ def common_start(one: str, other: str) -> int:
 
 
 def prefix_of(name: str) -> str:
-    """Return what tells the kind of a name: small letters before a capital, a few before a mark."""
+    """Return what tells the kind of a name: small letters before a capital, a few before a mark.
+
+    It is in upper case.
+    """
     found = _PREFIX.match(name)
-    return found[0] if found else ""
+    return found[0].upper() if found else ""
 
 
 def _is_slip(

@@ -100,7 +100,17 @@ class Spelling:
             return None
         if near[0].replace("_", "") == _NUMBER.sub("0", name.upper()).replace("_", ""):
             return None
-        return _NUMBER.sub(lambda _: numbers.pop(0), near[0])
+        return _cased(_NUMBER.sub(lambda _: numbers.pop(0), near[0]), name)
+
+
+def _cased(name: str, written: str) -> str:
+    """Return a name in upper case in the letter case of one that is a slip away."""
+    start = common_start(name, written.upper())
+    end = common_start(name[start:][::-1], written.upper()[start:][::-1])
+    changed = name[start : len(name) - end]
+    if (written[start - 1] if start else written[1:2]).islower():
+        changed = changed.lower()
+    return f"{written[:start]}{changed}{written[len(written) - end :]}"
 
 
 def spelling_of(sources: Iterable[Source]) -> Spelling:

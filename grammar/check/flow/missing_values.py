@@ -11,9 +11,11 @@ from collections.abc import Iterator
 from grammar.check.analysis.accesses import Access, Use, accesses
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
 from grammar.check.analysis.control_flow_graph import FlowNode
+from grammar.check.analysis.likely_names import LikelyNames
 from grammar.check.flow.data_flow import data_flow, position
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.syntax import ast
+from grammar.syntax.references import Space
 from grammar.syntax.walk import BODIES
 from support.lazy_dataclass import dataclass
 
@@ -43,6 +45,8 @@ def _read_too_early(context: Context, routine: RoutineBody) -> Iterator[Diagnost
     reported: set[str] = set()
     for access in flow.early(flow.variables):
         reported.add(access.key)
+        if access.key in _misspelt(context, routine):
+            continue
         message = f"{access.name.text} has no value yet"
         reason = "nothing before this assigns to it"
         yield context.finding("read-too-early", access.name, message, reason=reason)
@@ -50,6 +54,19 @@ def _read_too_early(context: Context, routine: RoutineBody) -> Iterator[Diagnost
         message = f"{access.name.text} may have no value yet"
         reason = f"line {line} assigns to it, and there is a way past that"
         yield context.finding("read-perhaps-early", access.name, message, reason=reason)
+
+
+def _misspelt(context: Context, routine: RoutineBody) -> frozenset[str]:
+    """Return what an undeclared name in a routine may be a slip of, which is told there."""
+    start, end = routine.node.span
+    likely = LikelyNames(context)
+    return frozenset(
+        near.upper()
+        for uses in context.open_uses.values()
+        for use in uses
+        if start <= use.name.span[0] < end and use.space is Space.VALUE
+        for near in likely.of(use)
+    )
 
 
 def _possibly_early(

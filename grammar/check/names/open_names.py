@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import cache, cached_property
 
 from grammar.check.analysis.context import Context
-from grammar.check.names.likely_names import LikelyNames
+from grammar.check.analysis.likely_names import LikelyNames
 from grammar.check.names.misspelt_declarations import slips_in_file, unused
 from grammar.check.names.unresolved_name import UnresolvedName, declaration_of, home_of
 from grammar.diagnostics.diagnostic import Region
@@ -94,7 +94,9 @@ def _declarable(context: Context) -> Iterator[UnresolvedName]:
             continue
         first = uses[0]
         near, instead = likely.of(first), swapped.of(first)
-        is_swapped = len(instead) == 1 and near in ((), instead)
+        is_swapped = len(instead) == 1 and (near == () or instead[0] in near)
+        if is_swapped and near:
+            near = instead  # rather than what is used under its own name
         yield UnresolvedName(
             space,
             first.name.text,

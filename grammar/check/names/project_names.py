@@ -23,7 +23,7 @@ from grammar.check.names.unresolved_name import (
 from grammar.diagnostics.codes import Severity
 from grammar.diagnostics.diagnostic import Diagnostic, diagnose
 from grammar.diagnostics.did_you_mean import one_of
-from grammar.diagnostics.typos import Typos
+from grammar.diagnostics.typos import Typos, prefix_of
 from grammar.syntax.references import Space
 
 # Two names of so many letters that are one slip apart and used once each are one.
@@ -83,6 +83,7 @@ def _meant(
         space: Typos(some[0].name for (at, _), some in uses.items() if at is space)
         for space in SLUGS
     }
+    prefixes = Counter((space, prefix_of(some[0].name)) for (space, _), some in uses.items())
     ranks = {key: (counts[key], -number) for number, key in enumerate(uses)}
 
     def is_right(space: Space | None, right: str, wrong: str) -> bool:
@@ -90,6 +91,8 @@ def _meant(
         rank, other = ranks[space, right.upper()], ranks[space, wrong.upper()]
         if rank[0] != other[0]:
             return rank > other
+        if spelling.meant(right) == wrong:
+            return False
         if rank[0] > 1 or len(right) < _LONG:
             return False
         return spelling.is_likelier(right, wrong) or (
@@ -97,7 +100,10 @@ def _meant(
         )
 
     def among_undeclared(space: Space | None, name: str) -> Iterator[str]:
-        for near in typos[space].meant(name, has_plurals=space is Space.VALUE):
+        prefix = prefix_of(name)
+        has_slipped = bool(prefix) and prefixes[space, prefix] == 1
+        has_plurals = space is Space.VALUE
+        for near in typos[space].meant(name, has_slipped=has_slipped, has_plurals=has_plurals):
             if is_right(space, near, name):
                 yield near
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from grammar.check.analysis.context import Context
-from grammar.check.names.likely_names import system_typos
+from grammar.check.analysis.likely_names import system_typos
 from grammar.check.names.misspelt_declarations import slips_in_file
 from grammar.check.names.unresolved_name import SLUGS, WORDS, declaration_of, home_of
 from grammar.diagnostics.codes import Severity
@@ -21,7 +21,6 @@ from grammar.semantics.scopes import Found, Module, NotFound, Reason, Undetermin
 from grammar.semantics.symbols import Access, Kind
 from grammar.semantics.types import SCALARS
 from grammar.syntax import ast
-from grammar.syntax.ast import Span
 from grammar.syntax.references import Space
 
 
@@ -75,7 +74,7 @@ def _unknown(context: Context, space: Space, use: Use) -> Diagnostic:
         message = f"{name.text} of {hidden.module.path} cannot be seen from here"
         slug = "routine-not-global" if space is Space.ROUTINE else SLUGS[space]
         return context.finding(slug, name, message, reason=_why_hidden(hidden))
-    fix = context.suggestions.suggest(name.text, _visible(context, space, name.span))
+    fix = context.suggestions.suggest(name.text, _visible(context, space, name))
     if name in context.constants:
         fix = _sign_added(context, name)
     return context.finding(SLUGS[space], name, f"no {word} is called {name.text}", fix=fix)
@@ -96,10 +95,13 @@ def _why_hidden(hidden: Found) -> str:
     return "its data list is not PUBLIC"
 
 
-def _visible(context: Context, space: Space, span: Span) -> Iterator[str]:
-    """Yield the names that may be meant, nearest scope first."""
+def _visible(context: Context, space: Space, name: ast.Name) -> Iterator[str]:
+    """Yield the names that may be meant, nearest scope first.
+
+    Of a system variable nobody forgets the dollar sign and makes another mistake, too.
+    """
     for routine in context.routines:
-        if routine.node.span[0] <= span[0] < routine.node.span[1]:
+        if routine.node.span[0] <= name.span[0] < routine.node.span[1]:
             yield from routine.table.table.names(space)
     yield from context.table.table.names(space)
     if context.own_data is not None:
@@ -111,7 +113,9 @@ def _visible(context: Context, space: Space, span: Span) -> Iterator[str]:
     system = context.system
     match space:
         case Space.VALUE:
-            yield from (name for name in system.variables if name.startswith("$"))
+            is_system = name.text.startswith("$")
+            signed = (one for one in system.variables if one.startswith("$"))
+            yield from (one for one in signed if is_system or one == f"${name.key}")
         case Space.ROUTINE:
             yield from system.functions
         case Space.TYPE:

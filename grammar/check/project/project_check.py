@@ -168,7 +168,8 @@ def read_source(source: Source) -> Reading:
         return Reading(None, tuple(syntax_findings(tree, source)), names_in_text(source.text))
     recovered = recover(source.text, source.path)
     found = tuple(syntax_findings(recovered.failures, source))
-    words = names_in_text(recovered.dropped) | ({REST} if recovered.is_cut else set())
+    meant = " ".join((one.fix and one.fix.replacement) or "" for one in found)
+    words = names_in_text(f"{recovered.dropped} {meant}") | ({REST} if recovered.is_cut else set())
     return Reading(recovered.syntax, found, words, recovered.exchanged)
 
 

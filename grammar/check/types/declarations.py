@@ -11,6 +11,7 @@ from grammar.check.analysis.type_checker import TypeChecker
 from grammar.check.types.expressions import type_checker
 from grammar.check.types.signals import check_signal
 from grammar.diagnostics.diagnostic import Diagnostic, Fix
+from grammar.diagnostics.did_you_mean import one_of
 from grammar.diagnostics.typos import Series, Typos
 from grammar.semantics.assignability import declarable
 from grammar.semantics.scopes import Found, NotFound
@@ -191,31 +192,38 @@ def _check_parameters(checker: TypeChecker, routine: RoutineBody) -> None:
         what = "the parameter" if len(undeclared) == 1 else "the parameters"
         verb = "is" if len(undeclared) == 1 else "are"
         message = f"{what} {names} {verb} not declared in the routine"
-        fix = Fix("declare each with its type, DECL INT NAME for instance, before any instruction")
-        place = _slipped(checker.context, routine, undeclared) or undeclared[0].span
-        checker.report("parameter-undeclared", place, message, fix=fix)
+        place, fix = _slipped(checker.context, routine, undeclared)
+        advice = "declare each with its type, DECL INT NAME for instance, before any instruction"
+        checker.report("parameter-undeclared", place, message, fix=fix or Fix(advice))
 
 
 def _slipped(
     context: Context, routine: RoutineBody, undeclared: Sequence[ast.Parameter]
-) -> Span | None:
-    """Return where the only undeclared parameter is declared with a slip, if that is unused."""
-    if len(undeclared) > 1:
-        return None
+) -> tuple[Span, Fix | None]:
+    """Return where undeclared parameters are told, and the name that is meant instead.
+
+    If there is one, and a variable that is a slip of it and unused, that is its declaration.
+    """
     name = undeclared[0].name
-    near = Typos([name.text], series=Series.NONE)
+    if len(undeclared) > 1:
+        return undeclared[0].span, None
+    typos = Typos([name.text], series=Series.NONE)
     used = {
         found.symbol
         for name, found in context.resolution.answers.items()
         if isinstance(found, Found) and name.span != found.symbol.span
     }
     is_used = any(symbol.key == name.key for symbol in used)
+    near = [
+        symbol
+        for symbol in routine.table.table.spaces[Space.VALUE].values()
+        if symbol.kind is Kind.VARIABLE and typos.meant(symbol.name)
+    ]
     slips = [
         symbol.span
-        for symbol in routine.table.table.spaces[Space.VALUE].values()
-        if symbol.kind is Kind.VARIABLE
-        and symbol not in used
-        and near.meant(symbol.name)
-        and (is_used or context.spelling.is_likelier(name.text, symbol.name))
+        for symbol in near
+        if symbol not in used and (is_used or context.spelling.is_likelier(name.text, symbol.name))
     ]
-    return slips[0] if len(slips) == 1 else None
+    if len(slips) == 1:
+        return slips[0], one_of([name.text])
+    return name.span, one_of(symbol.name for symbol in near)

@@ -68,13 +68,16 @@ class _Values:
 
     def element(self, node: ast.Assignment) -> None:
         """Check the initial value of an element, or of an array of CHAR."""
+        before = len(self.checker.diagnostics)
         self.checker.check_assignment(node, initial)
+        is_outside = any(one.code == "KSS1444" for one in self.checker.diagnostics[before:])
         root = root_variable(node.target)
         if root is None:
             return
         if isinstance(node.target, ast.Subscript):
             self._check_place(root.name, node)
-            self._check_order(root, node.target)
+            if not is_outside:  # its place is unknown
+                self._check_order(root, node.target)
         else:
             message = f"a data list cannot assign to {root.name.text}"
             fix = Fix("give the initial value in the declaration")

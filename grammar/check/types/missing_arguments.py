@@ -1,4 +1,4 @@
-"""Calls of routines that are in no file, with fewer arguments than all other calls of the project.
+"""Calls of routines that are in no file, with another number of arguments than all other calls.
 
 Without its routine a call cannot be checked. But programs call a routine with the same number of
 arguments everywhere, or with the same one as their first argument, as BAS and P00 are called:
@@ -28,7 +28,7 @@ class OpenCall:
     """The calls in a file of a routine that is in no file, with one number of arguments.
 
     ``command`` is the constant that they begin with, in upper case, or empty. ``region`` is the
-    first of ``count`` calls.
+    first of ``count`` calls. ``is_unknown`` if not even an option package has the routine.
     """
 
     name: str
@@ -37,6 +37,7 @@ class OpenCall:
     path: str
     region: Region
     count: int
+    is_unknown: bool
 
 
 def open_calls(context: Context) -> Iterator[OpenCall]:
@@ -50,7 +51,9 @@ def open_calls(context: Context) -> Iterator[OpenCall]:
     for (_, command, arguments), some in calls.items():
         first, path = some[0], context.source.path
         region = Region.of(context.source, first.span)
-        yield OpenCall(first.name.text, command, arguments, path, region, len(some))
+        answer = context.resolution.answers[first.name]
+        is_unknown = not (isinstance(answer, Found) and isinstance(answer.scope, PackageScope))
+        yield OpenCall(first.name.text, command, arguments, path, region, len(some), is_unknown)
 
 
 def _command(call: ast.Call) -> str:
@@ -70,7 +73,10 @@ def _may_have_more(answer: Answer, arguments: int) -> bool:
 
 
 def missing_arguments(calls: Iterable[OpenCall]) -> Iterator[Diagnostic]:
-    """Yield the single call of a routine, or with one command, that has fewer than all others."""
+    """Yield the single call of a routine, or with one command, that is unlike all others.
+
+    A call with more arguments is only told if nothing is known of the routine.
+    """
     routines: dict[str, list[OpenCall]] = {}
     commands: dict[tuple[str, str], list[OpenCall]] = {}
     for call in calls:
@@ -82,11 +88,16 @@ def missing_arguments(calls: Iterable[OpenCall]) -> Iterator[Diagnostic]:
         counts = Counter[int]()
         for call in some:
             counts[call.arguments] += call.count
-        few, usual = min(counts), max(counts)
-        if len(counts) == 2 and counts[few] == 1 and counts[usual] >= _FEWEST:
-            odd = next(call for call in some if call.arguments == few)
-            found.setdefault(odd, (usual, counts[usual]))
+        if len(counts) != 2:
+            continue
+        (usual, others), (odd, one) = counts.most_common()
+        if one == 1 and others >= _FEWEST:
+            call = next(call for call in some if call.arguments == odd)
+            is_alike = all(other.command == call.command for other in some)
+            if odd < usual or (call.is_unknown and is_alike):
+                found.setdefault(call, (usual, others))
     for call, (usual, others) in found.items():
         many = f"{counted(usual)} in its {others} other calls"
         message = f"{call.name} has {many}, and {call.arguments} here"
-        yield diagnose("argument-missing", call.path, call.region, message)
+        slug = "argument-missing" if call.arguments < usual else "too-many-arguments"
+        yield diagnose(slug, call.path, call.region, message, severity="warning")

@@ -365,6 +365,7 @@ def test_lead(line: str, word: str) -> None:
         (["FOR I = 1 TO 2", "  WHILE B", "    HALT", "ENDFOR", "HALT"], 4, 6),
         (["LOOP", "  SWITCH I", "    CASE 1", "      HALT", "ENDLOOP"], 4, 7),
         (["LOOP", "  LOOP", "    HALT", "  ENDLOOP", "  HALT"], 3, 8),
+        (["FOR I = 1 TO 2", "HALT", "FOR i = 1 TO 2", "HALT", "ENDFOR"], 3, 5),
         (["IF A THEN", "HALT", "HALT"], 3, 6),
         (["IF A THEN", "  ; nothing", "HALT", "HALT"], 3, 5),
         (["IF A THEN", "  IF B THEN", "    HALT", "ELSE", "  HALT", "ENDIF"], 4, 6),

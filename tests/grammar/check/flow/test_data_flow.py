@@ -296,3 +296,24 @@ def test_undeclared_variables_of_two_kinds(
     """An undeclared variable is one kind of value in all places: one that differs is a slip."""
     found = finds({"NEG.src": "\n".join(["DEF NEG()", *lines, "END"])}, is_complete=None)
     assert mark == any(one.code == "KSS1446" for one in found)
+
+
+def test_a_variable_without_a_value_because_of_a_slip(agrees: Agrees) -> None:
+    """It is told at the misspelt assignment alone."""
+    text = routine("INT COUNTER", "COUNTRE = 1 ;> KRL101?", "$OV_PRO = COUNTER")
+    agrees({"neg.src": text}, is_complete=None, with_data=True, ignored=("KRL117", "KRL702"))
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("DEFFCT INT NEG()\nHALT\nRETUR 1\nENDFCT\n", "KRL306"),
+        ("DEF NEG()\nINTERRUPT DECL 21 WHEN $IN[1] DO NEG()\nINTERRUPTT ON 21\nEND\n", "KRL516"),
+    ],
+)
+def test_a_misspelt_keyword_is_told_alone(text: str, code: str, tmp_path: Path) -> None:
+    """What the line is meant to do is not missed as well."""
+    (tmp_path / "neg.src").write_text(text, encoding="utf-8")
+    result = check_paths([tmp_path], CheckOptions(), jobs=1)
+    found = [one for one in result.diagnostics if one.severity != "note"]
+    assert ["KRL001"] == [one.code for one in found], code

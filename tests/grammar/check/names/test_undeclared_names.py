@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
+from grammar.check.analysis.spelling import spelling_of
 from grammar.check.project.project_check import CheckOptions, Content, found_in_project, recheck
 from grammar.diagnostics.diagnostic import Diagnostic
 from grammar.semantics.link import File, link
@@ -115,7 +116,7 @@ def test_small_letters_that_another_name_begins_with_are_a_prefix(
     ("declared", "line"),
     [
         ("TAKE_2, TAKE_21", "TAKE_22 = 1"),
-        ("GRIPE, GRIPPED", "GRIPED = 1\nGRIPED = 2\nGRIPED = GRIPPED"),
+        ("GRIPE, GRIPPED", "GRIPED = 1\nGRIPED = 2\nGRIPED = 3"),
         ("TAKE_2", "TAKE_22 = 1\nTAKE_22 = = 2"),
     ],
 )
@@ -528,6 +529,65 @@ def test_any_slip_is_one_where_the_list_has_what_nothing_uses(
     data = f"DEFDAT CELL\nDECL INT {declared}=0\nENDDAT\n"
     cell = f"DEF CELL()\n{name} = 1 ;> KRL101?\nEND"
     agrees({"cell.dat": data, "cell.src": cell}, is_complete=None)
+
+
+def test_what_nothing_uses_is_meant_before_what_is_used(agrees: Agrees) -> None:
+    """Of similar declarations the one without a use is misspelt, and is told itself."""
+    data = """DEFDAT CELL
+DECL INT POSE_ALFA, POSE_BLFA
+DECL INT POSE_CLFB ;> KRL101?
+ENDDAT
+"""
+    cell = "DEF CELL()\nPOSE_ALFA = 1\nPOSE_BLFA = 1\nPOSE_CLFA = 1\nPOSE_CLFA = 2\nEND"
+    agrees({"cell.dat": data, "cell.src": cell}, is_complete=None)
+
+
+@pytest.mark.parametrize("declared", ["eki_status", "EKI_STATUS"])
+def test_a_wrong_letter_in_a_prefix(agrees: Agrees, declared: str) -> None:
+    """It is told where no other name has that prefix, in any letter case."""
+    cell = f"DEF CELL()\nINT {declared}, eki_mode\nrki_status = 1 ;> KRL101?\nEND"
+    agrees({"cell.src": cell}, is_complete=None, ignored=("KRL702",))
+
+
+def test_a_declaration_with_a_wrong_letter_in_its_prefix(agrees: Agrees) -> None:
+    """It is told where the prefix of the use is usual and that of the declaration is not."""
+    cell = """DEF CELL()
+ROS_INIT()
+ROS_INIT()
+ROS_OPEN()
+END
+DEF TOS_INIT() ;> KRL102?
+END
+DEF ROS_OPEN()
+END"""
+    agrees({"cell.src": cell}, is_complete=None)
+
+
+def test_two_undeclared_names_are_not_slips_of_one_another(agrees: Agrees) -> None:
+    """Where other numbers are written the name with the usual letters is the right one."""
+    cell = """DEF CELL()
+PTP CNC_POINT1
+PTP CNC_POINT2
+PTP CNC_POINT3
+PTP CNC_POIT4 ;> KRL101?
+PTP CNC_POINT4
+END"""
+    agrees({"cell.src": cell}, is_complete=None, ignored=("KRL701", "KRL702"))
+
+
+def test_a_suggested_name_has_the_letter_case_of_the_misspelt_one() -> None:
+    """Spelling compares names in upper case."""
+    texts = ["DEF A()\ngPointOne = 1\nEND\n", "DEF B()\ngPointOne = 1\nEND\n"]
+    assert "gPointOne" == spelling_of(Source(text, text) for text in texts).meant("gPoitOne")
+
+
+def test_a_sign_is_not_suggested_for_a_name_with_another_mistake(
+    finds: Callable[..., list[Diagnostic]],
+) -> None:
+    """A variable in scope is nearer than a system variable that also lacks its dollar sign."""
+    cell = "DEF CELL()\nINT OU\nOU = 1\nOUU = OU\nOUTT = OU\nIN[1] = TRUE\nEND"
+    fixes = [one.fix.text for one in finds({"cell.src": cell}) if one.code == "KRL101" and one.fix]
+    assert ["did you mean OU?", "did you mean $IN?"] == fixes
 
 
 def found_in(files: dict[str, str]) -> list[tuple[str, int, str]]:

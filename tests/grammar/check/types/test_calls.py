@@ -4,6 +4,8 @@ from collections.abc import Callable
 
 import pytest
 
+from grammar.diagnostics.diagnostic import Diagnostic
+
 Agrees = Callable[..., None]
 
 ROUTINES = """DEF TAKE(A:IN, B:OUT)
@@ -122,3 +124,18 @@ DEF WORK(A:IN) ;> KRL115?
 END
 """
     )
+
+
+@pytest.mark.parametrize(
+    ("head", "declared", "meant"),
+    [("FEEDACK", "FEEDBACK", "FEEDBACK"), ("FEEDBACK", "FEEDACK", "FEEDBACK"), ("A", "N", None)],
+)
+def test_what_an_undeclared_parameter_may_mean(
+    finds: Callable[..., list[Diagnostic]], head: str, declared: str, meant: str | None
+) -> None:
+    """A similar variable of the routine, or the parameter where that is declared and unused."""
+    text = f"DEF NEG({head}:IN)\nINT {declared}\n$OV_PRO = FEEDBACK\nEND"
+    (found,) = [one for one in finds({"neg.src": text}) if one.code == "KRL115"]
+    assert found.fix is not None
+    assert (meant is None) == found.fix.text.startswith("declare each")
+    assert meant is None or f"did you mean {meant}?" == found.fix.text

@@ -13,6 +13,7 @@ Agrees = Callable[..., None]
         ("TYP-10", ["DECL CHAR A[3]", 'A[1] = "A"', 'A[3] = "C" ;> KRL118?']),
         ("TYP-10", ["DECL CHAR A[2,3]", 'A[1,1] = "A"', 'A[1,3] = "C" ;> KRL118?']),
         ("TYP-10", ["DECL CHAR A[2,3]", 'A[1,1] = "A"', 'A[2,2] = "B" ;> KRL118?']),
+        ("TYP-10", ["DECL INT A[9]", "A[1] = 1", "A[99] = 1 ;> KSS1444", "A[3] = 1"]),
         ("TYP-12", ["DECL INT A = 3.5 ;> KRL209-"]),
         ("TYP-19", ["STRUC T INT X, FRAME F", "DECL T A = {X TRUE, F {V 2}} ;> KSS1446 KSS2125"]),
         ("IOT-03", ["SIGNAL A B", "SIGNAL B A ;> KRL119"]),

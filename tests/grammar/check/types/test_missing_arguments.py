@@ -31,6 +31,25 @@ def test_one_call_with_fewer(agrees: Agrees, lines: list[str]) -> None:
     agrees(_cell(*lines), is_complete=None, ignored=("KRL701",))
 
 
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["BAS (#TOOL,1,2) ;> KRL301?"],
+        ["BAS (#TOOL,1,2)"] * 2,
+        ["BAS (#PTP_PARAMS,1,2)"],  # another command may have more
+    ],
+)
+def test_one_call_with_more(agrees: Agrees, lines: list[str]) -> None:
+    """It is told where all calls with its command have one number, and three do."""
+    agrees(_cell("BAS (#TOOL,4)", *lines), is_complete=None, ignored=("KRL701",))
+
+
+def test_a_package_has_optional_arguments(agrees: Agrees) -> None:
+    """What is known of a routine says more than its other calls."""
+    cell = "DEF CELL ( )\n" + "RSI_MOVECORR ()\n" * 4 + "RSI_MOVECORR (1)\nEND\n"
+    agrees({"cell.src": cell}, is_complete=None, packages=frozenset({"RSI"}))
+
+
 def test_other_commands_may_have_fewer(agrees: Agrees) -> None:
     """With the same command, which is the first argument, all other calls have to agree."""
     lines = ["BAS (#INITMOV)"] * 2 + ["BAS (#TOOL,3)", "BAS (#TOOL) ;> KRL302?"]

@@ -71,11 +71,20 @@ class LikelyNames:
     def _declared(self, space: Space, name: str) -> tuple[str, ...]:
         """Return the declared names, those of the file rather than those visible everywhere."""
         own, everywhere = self._own_typos(space), self._context.project.typos[space]
-        prefix = prefix_of(name)
-        has_slipped = prefix not in self._prefixes and prefix not in everywhere.prefixes
         has_plurals = space is Space.VALUE
+
+        def has_slipped(one: str, declared: int) -> bool:
+            """Return whether no other name has the prefix of one that is declared so often."""
+            prefix = prefix_of(one)
+            return prefix not in self._prefixes and everywhere.prefixes[prefix] <= declared
+
+        is_prefix_wrong = has_slipped(name, 0)
         for known in (own, everywhere):
-            if meant := known.meant(name, has_slipped=has_slipped, has_plurals=has_plurals):
+            if meant := known.meant(name, has_slipped=is_prefix_wrong, has_plurals=has_plurals):
+                return meant
+            near = known.meant(name, has_slipped=True, has_plurals=has_plurals)
+            words = (one for one in near if prefix_of(one).endswith("_"))
+            if meant := tuple(one for one in words if has_slipped(one, 1)):
                 return meant
         return ()
 
