@@ -43,9 +43,11 @@ def _read_too_early(context: Context, routine: RoutineBody) -> Iterator[Diagnost
     """Yield variables that are read where they cannot have a value yet [SCO-03, SCO-08]."""
     flow = data_flow(context, routine)
     reported: set[str] = set()
-    for access in flow.early(flow.variables):
+    early = list(flow.early(flow.variables))
+    misspelt = _misspelt(context, routine) if early else frozenset()
+    for access in early:
         reported.add(access.key)
-        if access.key in _misspelt(context, routine):
+        if access.key in misspelt:
             continue
         message = f"{access.name.text} has no value yet"
         reason = "nothing before this assigns to it"
