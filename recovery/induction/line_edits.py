@@ -12,6 +12,7 @@ from grammar.notation.model import Element, Repeat
 from recovery.forms.operand_rules import is_optional
 from recovery.forms.samples import samples_of
 from recovery.forms.symbols import Symbol
+from recovery.induction.grammar_view import item_of
 from recovery.induction.inferred_keywords import InferredKeywords
 from recovery.induction.line_hosts import LineHosts
 from recovery.induction.line_symbols import WORD, LineSymbols
@@ -236,7 +237,7 @@ class LineEdits:
     def _one_word_apart(
         self, rule: str, place: Address, first: Sequence[Element], members: Sequence[int]
     ) -> Iterator[InferredStep]:
-        """Edits for lines with one word more or less at their head than a form of the grammar.
+        """Yield edits for lines with one word more or less at their head than a form of the grammar.
 
         ``first`` are the elements of the form.
         """
@@ -252,9 +253,10 @@ class LineEdits:
                 longer[word].append(number)
         if shorter:
             source = self.at.grammar.by_name[rule].source_of
-            both, one = source(first[0]), source(first[1]).removesuffix("?")
+            both, (item, often) = source(first[0]), item_of(first[1])
             # not both of them may be missing
-            either = Replace(rule, place, f"({both} {one}? | {one})", 2)
+            one = source(item) + ("+" if often == "*" else "")
+            either = Replace(rule, place, f"({both} {source(first[1])} | {one})", 2)
             edit = either if is_optional(first[1]) else MakeOptional(rule, place)
             title = f"without {' or '.join(sorted(lead))} in {rule}"
             yield InferredStep(title, (edit,), tuple(shorter), is_known=True)

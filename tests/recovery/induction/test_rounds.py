@@ -248,6 +248,17 @@ def test_a_word_ahead_of_a_form(toy: Grammar) -> None:
     assert "WIDE? OPEN NAME (NAME | OPEN)" in _grown(start, files).grammar.text
 
 
+def test_a_form_without_its_first_word(toy: Grammar) -> None:
+    """The words behind it, which may be missing, cannot be missing too."""
+    grown = toy.text.replace("    | halt\n", "    | halt\n    | SHUT OPEN* NAME\n")
+    words = "".join(f"{w} : '{w}' ;\n" for w in ("OPEN", "SHUT"))
+    start = read(grown.replace("HALT : 'HALT' ;\n", f"HALT : 'HALT' ;\n{words}"))
+    files = tuple(CorpusFile(o, f"OPEN P{o}\nOPEN OPEN Q{o}\n", frozenset({o})) for o in "ABCDE")
+    recognizer = Recognizer(_grown(start, files).grammar)
+    texts = ("OPEN OPEN P\n", "SHUT OPEN P\n", "SHUT P\n", "P\n")
+    assert [True, True, True, False] == [recognizer.accepts(text) for text in texts]
+
+
 def test_what_comes_once_or_more_may_be_missing(toy: Grammar) -> None:
     """It may come as often as before then."""
     start = _with(toy, "'(' arguments? ')'", "'(' NAME '+' primary+ ')'")
