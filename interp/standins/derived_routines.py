@@ -1,8 +1,8 @@
 """Routines for undeclared names, derived from their calls.
 
 A routine consists of its signature: it does nothing, assigns a default to arguments without a
-value, and returns a default. A function that reports success returns TRUE, and other numeric
-functions return 0.
+value, the first case if a SWITCH asks for it, and returns a default. A function that reports
+success returns TRUE, and other numeric functions return 0.
 """
 
 from __future__ import annotations

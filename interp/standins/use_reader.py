@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from grammar.check.project.framework import Checked
 from grammar.semantics.link import Project
 from grammar.semantics.scopes import Found, Module
-from grammar.semantics.symbols import Kind, RoutineSymbol, TypeReference
+from grammar.semantics.symbols import Kind, RoutineSymbol, Symbol, TypeReference
 from grammar.semantics.types import (
     BOOL,
     CHAR,
@@ -68,6 +69,10 @@ class _Reader:
         self._result: Type = UNKNOWN
         self._written_result: TypeReference | None = None
         self._counted: dict[str, int] = {}
+        #: By declared variables: the arguments of undeclared routines that they are, and the
+        #: numbers with which a SWITCH compares them.
+        self._passed: dict[Symbol, list[DataUse]] = defaultdict(list)
+        self._cases: dict[Symbol, list[str]] = defaultdict(list)
 
     def read(self) -> None:
         syntax = self._checked.module.syntax
@@ -81,6 +86,10 @@ class _Reader:
             self._written_result = None if found is None else found.symbol.type
             self._counted.clear()
             self._visit(routine)
+        for symbol, cases in self._cases.items():
+            for use in self._passed[symbol]:  # what such a routine answers selects a case
+                use.cases.update(cases)
+                use.asked_for = use.asked_for or cases[0]
 
     # ------------------------------------------------------------------------- statements
 
@@ -201,6 +210,8 @@ class _Reader:
                 use = self._use(node.selector)
                 if use is not None:
                     use.cases.add(_number(value))
+                elif (symbol := self._declared(node.selector)) and _number(value):
+                    self._cases[symbol].append(_number(value))
 
     def _motion(self, node: ast.Motion) -> None:
         for point in (node.auxiliary, node.target):
@@ -262,6 +273,8 @@ class _Reader:
                     given = use.arguments[place]
                     given.record(type_)
                     given.is_variable &= type_ != UNKNOWN and self._is_variable(argument)
+                    if symbol := self._declared(argument):
+                        self._passed[symbol].append(given)
         elif found is not None and isinstance(found.symbol, RoutineSymbol):
             for output in node.arguments[:1] if node.name.key == "PULSE" else ():
                 pulsed = None if output is None else self._use(output)
@@ -281,6 +294,12 @@ class _Reader:
             return True
         is_listed = found.module.suffix == ".dat" and name.key in self._uses.data
         return is_listed and self._is_apart(self._checked.module, name.key)
+
+    def _declared(self, node: ast.Expression) -> Symbol | None:
+        """Return the variable that an expression is, if a file declares it."""
+        is_one = isinstance(node, ast.Variable) and not self._is_undeclared(node.name)
+        found = self._checked.resolution.found(node.name) if is_one else None
+        return found.symbol if found is not None and found.module is not None else None
 
     def _is_variable(self, node: ast.Expression) -> bool:
         """Return whether a call can change an expression; system variables are excluded."""

@@ -237,7 +237,7 @@ class LineEdits:
     def _one_word_apart(
         self, rule: str, place: Address, first: Sequence[Element], members: Sequence[int]
     ) -> Iterator[InferredStep]:
-        """Yield edits for lines with one word more or less at their head than a form of the grammar.
+        """Yield edits for lines with one word more or less at their head than a form has.
 
         ``first`` are the elements of the form.
         """

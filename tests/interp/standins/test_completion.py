@@ -590,6 +590,18 @@ def test_states_of_a_machine(last: str, value: str) -> None:
     assert f"DECL GLOBAL INT STEP={value}" in _data_list(program)
 
 
+@pytest.mark.parametrize(("cases", "reached"), [((7, 8), 1), ((0, 7), 1), ((7, 0), 2)])
+def test_commands_that_are_received(cases: tuple[int, int], reached: int) -> None:
+    """A number that an option package reads into a variable selects a case, 0 if that is one."""
+    text = (
+        "DEF main ( )\nDECL INT COMMAND\nDECL EKI_STATUS R\n"
+        'R=EKI_GetInt ("Cell","Robot/Command",COMMAND)\nSWITCH COMMAND\n'
+        f"CASE {cases[0]}\n$OUT[1]=TRUE\nCASE {cases[1]}\n$OUT[2]=TRUE\nENDSWITCH\nEND\n"
+    )
+    run = _run(_program({"main.src": text}))
+    assert [reached] == [event.fields["number"] for event in run.events if event.kind == "out"]
+
+
 def test_constants_that_are_only_passed() -> None:
     """An enumeration that no file has, has the constants that parameters of it are given."""
     text = "DEF main ( )\nshade (#BLUE )\nEND\nDEF shade (C :IN )\nDECL COLOURS C\n"
