@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Final
 
 from conformance.suite.case import Case
@@ -22,6 +21,7 @@ from grammar.syntax import ast
 from grammar.syntax.build import read_module
 from grammar.syntax.source import Source
 from grammar.syntax.walk import bodies, walk
+from support.files.tables import read_table
 
 #: What is expected of a blend, of places, and of a value.
 _BLEND: Final = frozenset(
@@ -87,8 +87,7 @@ class Doubt:
 
 @cache
 def _patterns() -> tuple[tuple[str, re.Pattern[str]], ...]:
-    table = Path(__file__).with_suffix(".tsv")
-    rows = (row.split("\t") for row in table.read_text(encoding="utf-8").splitlines()[1:])
+    rows = read_table("conformance.linter", "unconfirmed_constructs.tsv")[1:]
     return tuple((clause, re.compile(pattern)) for clause, _, pattern in rows)
 
 

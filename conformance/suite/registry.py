@@ -14,6 +14,8 @@ from functools import cache
 from importlib import resources
 from types import MappingProxyType
 
+from support.files.tables import read_table
+
 
 @dataclass(frozen=True, slots=True)
 class Clause:
@@ -73,8 +75,7 @@ class Search:
 @cache
 def searches() -> Mapping[str, Search]:
     """Return the searches for sources, by the IDs of rules and clauses."""
-    text = resources.files("conformance").joinpath("searches.tsv").read_text(encoding="utf-8")
-    rows = (line.split("\t") for line in text.splitlines()[1:])
+    rows = read_table("conformance", "searches.tsv")[1:]
     return MappingProxyType({id_: Search(wanted, found) for id_, wanted, found in rows})
 
 

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib import resources
 from typing import Literal, get_args
 
+from support.files.tables import read_table
 from support.lazy_dataclass import dataclass
 
 #: In descending order. An error is a program that the controller rejects.
@@ -37,11 +37,10 @@ class DiagnosticCode:
 @cache
 def by_slug() -> Mapping[str, DiagnosticCode]:
     """Return all codes by their slugs, in the order of the table."""
-    table = resources.files(__package__).joinpath("codes.tsv").read_text(encoding="utf-8")
     found: dict[str, DiagnosticCode] = {}
     severities: Mapping[str, Severity] = {word: word for word in get_args(Severity)}
-    for number, row in enumerate(table.splitlines()[1:], 2):
-        name, slug, severity, rules, title, explanation = row.split("\t")
+    for number, row in enumerate(read_table("grammar.diagnostics", "codes.tsv")[1:], 2):
+        name, slug, severity, rules, title, explanation = row
         if severity not in severities or slug in found:
             wrong = f"{slug} is there twice" if slug in found else f"no severity is {severity}"
             raise ValueError(f"codes.tsv:{number}: {wrong}")

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib import resources
 
+from support.files.tables import read_table
 from support.lazy_dataclass import dataclass
 
 
@@ -91,8 +91,7 @@ class Packages:
 @cache
 def load_packages() -> Packages:
     """Return the packages in the table."""
-    file = resources.files("grammar").joinpath("system", "packages.tsv")
-    columns, *rows = (line.split("\t") for line in file.read_text(encoding="utf-8").splitlines())
+    columns, *rows = read_table("grammar", "system/packages.tsv")
     routines: dict[str, PackageRoutine] = {}
     types: dict[str, PackageType] = {}
     variables: dict[str, PackageVariable] = {}

@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from importlib import resources
 from operator import itemgetter
 from typing import Literal, TypeVar
 
@@ -25,6 +24,7 @@ from grammar.semantics.types import (
     Structure,
     Type,
 )
+from support.files.tables import read_table
 from support.lazy_dataclass import dataclass
 
 #: A release of the controller's software, KSS: 8.6 is ``(8, 6)``.
@@ -321,8 +321,7 @@ def _message(row: _Row) -> Message:
 @cache
 def _table(name: str) -> tuple[list[str], list[list[str]]]:
     """Return the names of the columns of a table, and its rows."""
-    file = resources.files("grammar").joinpath("system", f"{name}.tsv")
-    columns, *rows = (line.split("\t") for line in file.read_text(encoding="utf-8").splitlines())
+    columns, *rows = read_table("grammar", f"system/{name}.tsv")
     return columns, rows
 
 

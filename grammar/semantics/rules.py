@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cache
-from importlib import resources
+
+from support.files.tables import read_table
 
 _UNCONFIRMED = frozenset("RX")
 
@@ -18,9 +19,7 @@ _UNCONFIRMED = frozenset("RX")
 @cache
 def tiers() -> Mapping[str, str]:
     """Return the tier of each rule: a letter, or letters joined by ``+``."""
-    table = resources.files("grammar").joinpath("system", "rules.tsv")
-    rows = table.read_text(encoding="utf-8").splitlines()[1:]
-    return dict(row.split("\t") for row in rows)
+    return dict(read_table("grammar", "system/rules.tsv")[1:])
 
 
 def is_confirmed(rules: Iterable[str]) -> bool:

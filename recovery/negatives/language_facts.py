@@ -15,13 +15,13 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from importlib import resources
 from itertools import pairwise
 
 from grammar.blocks import BLOCKS, CLOSERS, OUTERMOST
 from grammar.motion_kinds import MOTIONS, PLAIN_MOTIONS
 from recovery.brackets import BRACKETS, CLOSING, closer_of
 from recovery.negatives.tokens import RESERVED, SourceLine, lines
+from support.files.tables import read_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +60,8 @@ def adjacent() -> Mapping[tuple[str, str], str]:
     Kinds are those of `recovery.negatives.tokens.SourceToken`; ``start`` and ``end`` are the ends
     of a line, ``any`` is every kind.
     """
-    table = resources.files(__package__).joinpath("adjacent.tsv").read_text(encoding="utf-8")
     found: dict[tuple[str, str], str] = {}
-    for row in table.splitlines()[1:]:
-        left, right, reason = row.split("\t")
+    for left, right, reason in read_table("recovery.negatives", "adjacent.tsv")[1:]:
         found |= {(a, b): reason for a in left.split() for b in right.split()}
     return found
 

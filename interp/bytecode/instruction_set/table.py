@@ -20,11 +20,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib import resources
 from typing import Final
 
 from interp.program.variables import MOST_CELLS
 from interp.values.faults import FAULTS
+from support.files.tables import read_table
 from support.lazy_dataclass import dataclass
 
 #: How an image begins, and the version of the format and the instruction set: a change of either
@@ -91,9 +91,7 @@ class Shape:
 @cache
 def instructions() -> tuple[Shape, ...]:
     """All instructions, by number."""
-    table = resources.files("interp.bytecode").joinpath("instructions.tsv")
-    rows = table.read_text(encoding="utf-8").splitlines()[1:]
-    return tuple(_shape(row.split("\t")) for row in rows)
+    return tuple(map(_shape, read_table("interp.bytecode", "instructions.tsv")[1:]))
 
 
 @cache

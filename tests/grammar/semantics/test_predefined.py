@@ -1,7 +1,6 @@
 """What the controller brings along is in tables that fit together, and is found by any release."""
 
 import re
-from importlib import resources
 
 import pytest
 
@@ -9,14 +8,14 @@ from grammar.diagnostics.codes import by_code, by_slug, code, of_message
 from grammar.semantics.predefined import System
 from grammar.semantics.rules import is_confirmed, tiers
 from grammar.semantics.types import INT, REAL, SCALARS, UNKNOWN, Array, Enumeration, Structure
+from support.files.tables import read_table
 
 SOURCES = {"S2", "S3", "S5", "S6", "D3", "R"}
 
 
 def rows(table: str) -> list[dict[str, str]]:
-    text = resources.files("grammar").joinpath("system", table).read_text(encoding="utf-8")
-    head, *lines = text.splitlines()
-    return [dict(zip(head.split("\t"), line.split("\t"), strict=True)) for line in lines]
+    columns, *found = read_table("grammar", f"system/{table}")
+    return [dict(zip(columns, row, strict=True)) for row in found]
 
 
 @pytest.fixture(scope="module")

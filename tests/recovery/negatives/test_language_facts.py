@@ -10,6 +10,7 @@ from recovery.negatives.language_facts import adjacent, violation
 from recovery.negatives.negatives import load
 from recovery.negatives.tokens import lines
 from support.files.decode import Decoded, decode
+from support.files.tables import read_table
 
 CORPUS = Path(__file__).parents[3] / "corpus"
 SYNTAX = Path(__file__).parents[2] / "grammar" / "syntax_cases"
@@ -180,16 +181,11 @@ def test_every_pair_of_the_table_can_occur() -> None:
 
 def test_table_is_in_its_form() -> None:
     """The table has three columns, a reason in every row, and no pair twice."""
-    path = Path(__file__).parents[3] / "recovery" / "negatives" / "adjacent.tsv"
-    head, *rows = path.read_text(encoding="utf-8").splitlines()
-    assert "left\tright\treason" == head
-    assert [] == [row for row in rows if len(row.split("\t")) != 3 or not row.split("\t")[2]]
-    pairs = [(a, b) for row in rows for a in row.split("\t")[0].split() for b in _right(row)]
+    head, *rows = read_table("recovery.negatives", "adjacent.tsv")
+    assert ["left", "right", "reason"] == head
+    assert [] == [row for row in rows if not row[2]]
+    pairs = [(a, b) for left, right, _ in rows for a in left.split() for b in right.split()]
     assert len(pairs) == len(set(pairs))
-
-
-def _right(row: str) -> list[str]:
-    return row.split("\t")[1].split()
 
 
 @pytest.mark.parametrize(
