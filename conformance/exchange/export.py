@@ -34,7 +34,7 @@ from conformance.suite.expectations import (
     expected_ending,
 )
 from conformance.suite.registry import basis, registry
-from conformance.suite.semantics import page
+from conformance.suite.rules_page import page
 from interp.controller import state
 from interp.controller.state.messages import OWN_FAULTS
 from interp.controller.state.profile import profile_names

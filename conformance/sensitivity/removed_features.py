@@ -69,7 +69,7 @@ def try_removals(
 
 def _removals(cases: Sequence[Case]) -> list[Removal]:
     return [
-        Removal(case.name, feature, run_case(without(case, feature), [_SETUP]).verdict)
+        Removal(case.name, feature, run_case(case_without(case, feature), [_SETUP]).verdict)
         for case in cases
         if (named := named_by(case)) and run_case(case, [_SETUP]).verdict == "pass"
         for feature in named
@@ -98,7 +98,7 @@ def named_by(case: Case) -> list[str]:
     ]
 
 
-def without(case: Case, feature: str) -> Case:
+def case_without(case: Case, feature: str) -> Case:
     """Return the case without a feature; its expectations and their places do not change."""
     edits = sorted(features(case)[feature], reverse=True)
     texts = {source.path: source.text for source in case.sources}

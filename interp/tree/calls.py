@@ -26,7 +26,7 @@ from interp.program.variables import (
 )
 from interp.tree.expressions import Expressions
 from interp.tree.places import LocalPlace, Place, SystemPlace, fresh, is_left_out, sized
-from interp.tree.run import Call, Steps
+from interp.tree.program_state import Call, Steps
 from interp.values.builtins import BUILTINS, WORLD, Surroundings, call, reads_text
 from interp.values.faults import LinkError, fault
 from interp.values.values import Value, copied, known, type_of

@@ -24,7 +24,7 @@ from interp.program.variables import (
     untyped_value,
 )
 from interp.tree.places import LocalPlace, Place, SystemPlace, element, member, of_type
-from interp.tree.run import Frame, ProgramState, Steps
+from interp.tree.program_state import Frame, ProgramState, Steps
 from interp.values.faults import Fault, LinkError, fault
 from interp.values.values import Value, copied, index
 

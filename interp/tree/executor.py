@@ -29,7 +29,7 @@ from interp.program.load import CheckedProgram, Guard, Limits
 from interp.program.statement_paths import routine_at, way_to
 from interp.program.variables import too_large
 from interp.tree.memory import fill_data
-from interp.tree.run import Call, Frame, ProgramState, Steps
+from interp.tree.program_state import Call, Frame, ProgramState, Steps
 from interp.tree.statements import Resumed, Selected, Statements
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 

@@ -1,7 +1,7 @@
 """Expressions: the values of literals, operators and aggregates.
 
 Every evaluation is a generator, because any variable may be a system variable and any call may move
-the arm (see `interp.tree.run`). Operands are evaluated from left to right.
+the arm (see `interp.tree.program_state`). Operands are evaluated from left to right.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from interp.program.literals import LITERALS, enumeration_constant
 from interp.program.reads import UNKNOWN_STRUCTURE, structure_of
 from interp.tree.designators import Designators
 from interp.tree.places import LocalPlace, member
-from interp.tree.run import Steps
+from interp.tree.program_state import Steps
 from interp.values.faults import LinkError, fault
 from interp.values.operators import apply, apply_unary
 from interp.values.values import (

@@ -17,7 +17,7 @@ from interp.program.load import CheckedProgram, Unit
 from interp.program.variables import MOST_CELLS, cells, data_lists, data_variables, first_values
 from interp.tree.calls import Calls
 from interp.tree.places import LocalPlace, Place, fresh
-from interp.tree.run import Frame, ProgramState, at_once
+from interp.tree.program_state import Frame, ProgramState, at_once
 from interp.values.faults import Fault, LinkError
 from interp.values.values import Value, copied
 

@@ -14,7 +14,7 @@ from interp.program.reads import is_constant_output, signal_name
 from interp.program.statement_requests import STATEMENT_REQUESTS, Fixed, Part
 from interp.tree.calls import Calls
 from interp.tree.places import SystemPlace, of_type
-from interp.tree.run import Steps
+from interp.tree.program_state import Steps
 from interp.values.faults import LinkError
 from interp.values.values import Value, converted, copied, text_of
 

@@ -20,7 +20,7 @@ from interp.program.statement_requests import STATEMENT_REQUESTS
 from interp.program.variables import is_complete
 from interp.tree.motions import Motions
 from interp.tree.places import SystemPlace, fresh, is_left_out, of_type
-from interp.tree.run import Steps, at_once
+from interp.tree.program_state import Steps, at_once
 from interp.values.faults import Fault, LinkError, RuntimeFailure, fault
 from interp.values.operators import apply
 from interp.values.values import Value, known

@@ -8,7 +8,7 @@ from reports.recovery.construct_data import construct_data
 from reports.recovery.survey_cluster import DETAILS, Detail, cluster_data, cluster_id
 from reports.recovery.survey_view import survey_view
 from reports.rendering.embedding import embedded_json
-from reports.rendering.page import render, source
+from reports.rendering.page import render, template_text
 from reports.rendering.record_fields import Record, nested, records, text
 from support.files.atomic_write import write_atomic
 
@@ -65,14 +65,14 @@ def _section(record: Record, shown: Record, detail: Detail) -> dict[str, Any]:
 
 def _script() -> str:
     """Return the page's scripts: a function of a section's data and prefix shows the section."""
-    parts = "\n".join(source(f"survey-{name}.js") for name in ("cards", "table", "chart"))
+    parts = "\n".join(template_text(f"survey-{name}.js") for name in ("cards", "table", "chart"))
     return f""""use strict";
 {{
-{source("vendor/uPlot.iife.min.js")}
-{source("page.js")}
-{source("source.js")}
-{source("construct.js")}
-{source("line-chart.js")}
+{template_text("vendor/uPlot.iife.min.js")}
+{template_text("page.js")}
+{template_text("source.js")}
+{template_text("construct.js")}
+{template_text("line-chart.js")}
 function present(data, prefix) {{
 const byId = (id) => document.getElementById(prefix + id);
 const {{ clusters, strings }} = data;
@@ -81,5 +81,5 @@ if (data.mending.length) chart();
 if (rows.length) connect();
 return rows.length ? readHash : null;
 }}
-{source("survey-sections.js")}}}
+{template_text("survey-sections.js")}}}
 """

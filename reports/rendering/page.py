@@ -42,7 +42,7 @@ def render(
         .render(
             view=view,
             data=embedded_json({}) if data is None else data,
-            style=inline_source("\n".join(map(source, styles))),
+            style=inline_source("\n".join(map(template_text, styles))),
             script=inline_source(script),
             script_hash=script_hash(script),
         )
@@ -51,7 +51,7 @@ def render(
 
 def joined(names: Iterable[str]) -> str:
     """Return the scripts with these names, without their suffix, as one."""
-    scripts = "\n".join(source(f"{name}.js") for name in names)
+    scripts = "\n".join(template_text(f"{name}.js") for name in names)
     return f'"use strict";\n{{\n{scripts}}}\n'
 
 
@@ -59,7 +59,7 @@ def joined(names: Iterable[str]) -> str:
 def _environment() -> Environment:
     """Return the environment of all pages, which compiles each template once."""
     environment = Environment(
-        loader=FunctionLoader(source),
+        loader=FunctionLoader(template_text),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -70,7 +70,7 @@ def _environment() -> Environment:
     return environment
 
 
-def source(name: str) -> str:
+def template_text(name: str) -> str:
     """Return the text of a template, script or style sheet."""
     file = resources.files("reports") / "templates" / name
     return file.read_text(encoding="utf-8").replace("\r\n", "\n")

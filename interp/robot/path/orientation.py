@@ -57,7 +57,7 @@ class Turning:
         turned = np.tile(self.start, (len(u), 1, 1))
         for axis, angle in ((self.axis, self.swivel), (_DIRECTION, self.twist)):
             if angle:  # most tools do not turn
-                turned = turned @ about(axis, u * angle)
+                turned = turned @ rotations_about(axis, u * angle)
         return turned
 
 
@@ -81,7 +81,7 @@ class Carried:
 
     def at(self, u: Array) -> Array:
         """See `Orientation.at`."""
-        turned: Array = about(self.axis, u * self.angle) @ self.inner.at(u)
+        turned: Array = rotations_about(self.axis, u * self.angle) @ self.inner.at(u)
         return turned
 
 
@@ -97,14 +97,14 @@ def turning(start: Array, end: Array, extent: float = 1.0) -> Turning:
         swivel = 0.0 if ahead > 0.0 else math.pi
     else:
         axis = np.array([0.0, -up, left]) / aside
-    (rest,) = about(axis, np.array([-swivel])) @ change
+    (rest,) = rotations_about(axis, np.array([-swivel])) @ change
     twist = math.atan2(rest[2, 1], rest[1, 1])
     if abs(twist) < _PARALLEL:
         twist = 0.0
     return Turning(start, axis, swivel * extent, twist * extent)
 
 
-def about(axis: Array, radians: npt.NDArray[np.float64]) -> Array:
+def rotations_about(axis: Array, radians: npt.NDArray[np.float64]) -> Array:
     """Return rotations ``(n, 3, 3)`` about a unit axis by angles ``(n,)``."""
     from scipy.spatial.transform import Rotation
 

@@ -22,7 +22,7 @@ from interp.robot.path.axis_path import (
     PosePathCurve,
 )
 from interp.robot.path.circle import Circle, circle_through
-from interp.robot.path.orientation import Carried, Orientation, about, turning
+from interp.robot.path.orientation import Carried, Orientation, rotations_about, turning
 from interp.robot.path.pose_path import GRID, Line, OrientedPath
 from interp.robot.path.programmed_targets import Programmed
 from interp.robot.path.tool_path import tool_tangents
@@ -288,7 +288,7 @@ def _along_circle(settings: Settings, circle: Circle, start: Array, end: Array) 
     first, last = (pose[:3, :3] for pose in (start, end))
     is_carried = settings.circle == "#PATH"
     if is_carried:
-        (back,) = about(circle.normal, np.array([-circle.programmed]))
+        (back,) = rotations_about(circle.normal, np.array([-circle.programmed]))
         last = back @ last
     extent = circle.angle / circle.programmed
     turned = turning(first, first if settings.orientation == "#CONSTANT" else last, extent)

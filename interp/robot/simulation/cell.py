@@ -15,7 +15,7 @@ import numpy.typing as npt
 from interp.robot.arm import Load
 from interp.robot.kinematics.kinematics import Array, matrix_of
 from interp.robot.kinematics.machine_data import AxisKind, MachineData
-from interp.robot.path.orientation import about
+from interp.robot.path.orientation import rotations_about
 from interp.robot.simulation.mujoco_model import mjcf_of
 from interp.robot.simulation.scene import Scene, SceneError, SceneObject
 from interp.values.poses import Pose
@@ -159,7 +159,7 @@ def _load_frames(machine: MachineData) -> dict[str, Array]:
     found["$LOAD_A1"] = np.linalg.inv(frames[0]).astype(np.float64)
     if len(joints) > 1:
         upright = np.eye(4)  # A2 at -90
-        upright[:3, :3] = about(np.array(joints[1].axis), np.array([-math.pi / 2]))[0]
+        upright[:3, :3] = rotations_about(np.array(joints[1].axis), np.array([-math.pi / 2]))[0]
         inverse = np.linalg.inv(frames[0] @ frames[1] @ upright)
         found["$LOAD_A2"] = inverse.astype(np.float64)
     return found

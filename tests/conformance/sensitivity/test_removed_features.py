@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from conformance.sensitivity.removed_features import (
+    case_without,
     features,
     named_by,
     removals_record,
     try_removals,
-    without,
 )
 from conformance.suite.case import Case, read_case
 
@@ -38,7 +38,7 @@ def _case(tmp_path: Path, title: str, *lines: str) -> Case:
 def test_features_of_a_line(tmp_path: Path, line: str, left: dict[str, str]) -> None:
     """Each feature of a statement, and what the line is without it."""
     case = _case(tmp_path, "A line", "$OUT[1] = TRUE ;> out 1 TRUE", line)
-    rows = {one: without(case, one).sources[0].text.splitlines() for one in features(case)}
+    rows = {one: case_without(case, one).sources[0].text.splitlines() for one in features(case)}
     assert left == {one: row[5].strip() for one, row in rows.items() if one != "$OUT"}
 
 
@@ -46,7 +46,7 @@ def test_lines_stay_where_they_are(tmp_path: Path) -> None:
     """A block of several lines leaves as many behind."""
     case = _case(tmp_path, "A loop", "LOOP", "EXIT", "ENDLOOP", "$OUT[1] = TRUE ;> out 1 TRUE")
     assert [*[""] * 3, "$OUT[1] = TRUE ;> out 1 TRUE"] == [
-        one.strip() for one in without(case, "LOOP").sources[0].text.splitlines()[4:8]
+        one.strip() for one in case_without(case, "LOOP").sources[0].text.splitlines()[4:8]
     ]
 
 

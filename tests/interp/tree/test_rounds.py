@@ -11,7 +11,7 @@ from interp.port.events import Sink
 from interp.port.requests import End, Fail, Slice
 from interp.program.load import Limits, load
 from interp.tree.executor import TreeExecutor
-from interp.tree.run import Frame, ProgramState, Steps
+from interp.tree.program_state import Frame, ProgramState, Steps
 
 
 def _executor(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from interp.robot.path.orientation import Carried, about, turning
+from interp.robot.path.orientation import Carried, rotations_about, turning
 from interp.values.poses import Pose
 
 ENDS = np.array([0.0, 1.0])
@@ -67,4 +67,6 @@ def test_carried_by_a_circle() -> None:
     """What is told in the frame of a path turns with it [ORI-04]."""
     start, axis = rotation(0, 90, 0), np.array([0.0, 0.0, 1.0])
     carried = Carried(turning(start, start), axis, math.pi / 2)
-    assert np.allclose(carried.at(ENDS)[1], about(axis, np.array([math.pi / 2]))[0] @ start)
+    assert np.allclose(
+        carried.at(ENDS)[1], rotations_about(axis, np.array([math.pi / 2]))[0] @ start
+    )

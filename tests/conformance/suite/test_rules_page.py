@@ -4,10 +4,10 @@ import re
 from importlib import resources
 from pathlib import Path
 
-from conformance.suite import semantics
+from conformance.suite import rules_page
 from conformance.suite.case import Case
 from conformance.suite.registry import registry, searches, unconfirmed
-from conformance.suite.semantics import PAGE, TIERS, codes_of, page, tier_table
+from conformance.suite.rules_page import PAGE, TIERS, codes_of, page, tier_table
 from grammar.diagnostics.codes import by_code
 from grammar.semantics.predefined import System
 from grammar.semantics.rules import tiers
@@ -16,7 +16,7 @@ WORDS = {"grammar", "tables", "check", "lint", "run"}
 
 
 def test_what_is_generated_is_fresh() -> None:
-    """Page and tiers are fresh: after a change run python -m conformance.suite.semantics."""
+    """Page and tiers are fresh: after a change run python -m conformance.suite.rules_page."""
     assert page() == PAGE.read_text(encoding="utf-8")
     assert tier_table() == TIERS.read_text(encoding="utf-8")
 
@@ -81,7 +81,7 @@ def test_every_code_is_given_by_a_check() -> None:
 
 def test_topics_are_those_of_the_rules() -> None:
     """Every topic has rules, and every rule has a topic."""
-    assert set(semantics._TOPICS) == {rule.topic for rule in registry().values()}
+    assert set(rules_page._TOPICS) == {rule.topic for rule in registry().values()}
 
 
 def test_each_unconfirmed_clause_was_looked_for() -> None:

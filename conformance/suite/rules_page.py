@@ -1,7 +1,7 @@
 """The generator of ``docs/semantics.md``, the reference of all rules, and of the table of tiers.
 
 Its input is the registry (`conformance.suite.registry`) and the codes of findings
-(`grammar.diagnostics.codes`). Run ``python -m conformance.suite.semantics`` after a change to
+(`grammar.diagnostics.codes`). Run ``python -m conformance.suite.rules_page`` after a change to
 either; a test fails if the page is stale.
 """
 
@@ -75,7 +75,7 @@ def page() -> str:
     topics = [_topic(topic, *words) for topic, words in _TOPICS.items()]
     totals = map(sum, zip(*(one["counts"] for one in topics), strict=True))
     given = {"topics": topics, "totals": list(totals), "today": today}
-    return template("semantics.md.j2").render(given, searches=searches().items())
+    return template("rules_page.md.j2").render(given, searches=searches().items())
 
 
 def _topic(topic: str, title: str, about: str) -> dict[str, Any]:
