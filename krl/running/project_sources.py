@@ -89,13 +89,11 @@ def _named(file: Path, found: "Sequence[FoundFile]") -> "FoundFile":
 def sources_below(roots: Sequence[Path]) -> "Iterator[tuple[str, Source]]":
     """Yield the readable files below folders and in archives, each with its origin.
 
-    Raises `InputError` if there is no root, or one cannot be read.
+    Raises `InputError` if a root cannot be read.
     """
     from grammar.syntax.source import Source
     from support.files.discovery import source_files
 
-    if not roots:
-        raise InputError("there is no corpus/ here: name files, folders or .zip archives")
     for one in source_files(roots):
         yield one.found.origin, Source(one.text, one.path)
 
