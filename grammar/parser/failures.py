@@ -35,6 +35,8 @@ from support.lazy_dataclass import dataclass
 _LONGEST_GAP = 64
 # How many of the next lines, blank ones left out, decide where reading continues.
 _LINES_AHEAD = 4
+# Among how many they are sought.
+_LINES_LOOKED_AT = 4 * _LINES_AHEAD
 _MOST_REMEMBERED = 50_000
 _LINE_END = re.compile(r"\r\n|\r|\n")
 
@@ -121,6 +123,16 @@ def line_states(recognizer: Recognizer) -> Mapping[State, Sequence[int]]:
     return found
 
 
+def beginning(text: str, line: int) -> str:
+    """Return as much of a text as decides how its lines up to ``line`` are read.
+
+    How reading continues after a failing line depends on the lines behind it. No token but a line
+    end may contain one.
+    """
+    ends = (found.end() for found in _LINE_END.finditer(text))
+    return text[: next(islice(ends, line + _LINES_LOOKED_AT, None), len(text))]
+
+
 class FailureFinder:
     """Finds the failures of files under one grammar; caches the lines it has seen."""
 
@@ -197,7 +209,7 @@ class FailureFinder:
                 opened.append(BLOCKS[lead])
                 lost = True
             guesses = (broken.mended, spot) if anchor is None else (anchor,)
-            ahead = lines[number + 1 : number + 1 + _LINES_AHEAD * 4]
+            ahead = lines[number + 1 : number + 1 + _LINES_LOOKED_AT]
             spot = self._resume(guesses, ahead, lost=lost)
 
     def _break(self, spot: Spot, line: int) -> _Broken:

@@ -12,7 +12,7 @@ import grammar.parser.failures
 from grammar.blocks import BLOCKS
 from grammar.notation.g4 import read, read_file
 from grammar.notation.generate import GRAMMAR
-from grammar.parser.failures import Failure, FailureFinder
+from grammar.parser.failures import Failure, FailureFinder, beginning
 from grammar.parser.recognizer import Recognizer
 from grammar.parser.sentences import Sentences, Speller
 
@@ -327,3 +327,14 @@ def test_memory_does_not_change_what_is_found(monkeypatch: pytest.MonkeyPatch) -
     assert expected == [
         [(f.line, f.column, f.follows) for f in forgetful.find(text)] for text in texts
     ]
+
+
+@given(MANY)
+def test_the_beginning_of_a_text_is_read_as_in_all_of_it(chance: Random) -> None:
+    """Up to each line, whatever lines come behind it."""
+    some = [line for lines in UNKNOWN.values() for line in lines] + ["X=1 1", "", "HALT", "ENDIF"]
+    text = program(*chance.choices(some, k=40))
+    failing = [failure.line for failure in FINDER.find(text)]
+    for line in range(1, 44):
+        early = [f.line for f in FINDER.find(beginning(text, line)) if f.line <= line]
+        assert [n for n in failing if n <= line] == early

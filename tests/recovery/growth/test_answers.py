@@ -9,6 +9,7 @@ import pytest
 from grammar.notation.edits import AddAlternative, AddToken, Edit, Insert, RemoveAlternative
 from grammar.notation.g4 import read_file
 from grammar.notation.generate import GRAMMAR
+from grammar.parser.failures import beginning
 from recovery.analysis import analyse, with_answers
 from recovery.growth.answers import answered
 from recovery.ledger.construct import Construct
@@ -98,6 +99,23 @@ def test_a_ledger_without_constructs_answers_nothing(found: Survey) -> None:
         "clusters": [{**cluster(found, ("step.src", 2)), "answered_by": None}],
         "constructs": [],
     } == (answered([cluster(found, ("step.src", 2))], found, [], jobs=1))
+
+
+def test_answers_are_kept(found: Survey, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also that there is none; only what is new is read under the grammars of the ledger."""
+    given = [cluster(found, ("step.src", 2)), cluster(found, ("never.src", 2))]
+    new = cluster(found, ("halt.src", 2))
+    kept = answered(given, found, STEPS, jobs=1, cache=tmp_path / "cache")
+    read: set[str] = set()
+
+    def noted(text: str, line: int) -> str:
+        read.add(text)
+        return beginning(text, line)
+
+    monkeypatch.setattr("recovery.growth.answers.beginning", noted)
+    again = answered([*given, new], found, STEPS, jobs=1, cache=tmp_path / "cache")
+    assert kept["clusters"] == again["clusters"][:2]
+    assert {FILES["halt.src"]} == read
 
 
 def test_the_record_of_the_start_repeats_nothing(found: Survey) -> None:
