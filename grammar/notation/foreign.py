@@ -2,10 +2,10 @@
 
 The result accepts the same texts. Actions and labels are dropped because they do not change what is
 accepted. Literals that only parser rules quote get a lexer rule. Parser rules quote signs and name
-the tokens of words, whichever way they were written, and rows of lines have rules. A left-recursive
-rule becomes one for each level of precedence. Where no rule reads EOF, a new start rule does.
-Keywords spelt with a fragment for each letter (``I F``) become literals of a grammar that ignores
-case.
+the tokens of words, whichever way they were written. Rows of lines and brackets behind operands
+have rules. A left-recursive rule becomes one for each level of precedence. Where no rule reads EOF,
+a new start rule does. Keywords spelt with a fragment for each letter (``I F``) become literals of a
+grammar that ignores case.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from collections.abc import Iterator, Mapping
 from itertools import count
 from string import ascii_lowercase, ascii_uppercase
 
+from grammar.notation.bracket_style import with_rules_of_brackets
 from grammar.notation.g4 import checked, unchecked
 from grammar.notation.line_style import with_ends_of_lines, with_rules_of_lines
 from grammar.notation.model import (
@@ -51,6 +52,7 @@ def read_foreign(text: str, *, source: str = "grammar") -> Grammar:
         _with_levels,
         with_ends_of_lines,
         with_rules_of_lines,
+        with_rules_of_brackets,
     ):
         text = rewritten(unchecked(text, source))
     return checked(unchecked(text, source), source)

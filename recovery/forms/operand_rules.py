@@ -7,10 +7,11 @@ from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 from itertools import pairwise
 
-from grammar.notation.addresses import sequences
+from grammar.notation.addresses import Address, sequences
 from grammar.notation.model import (
     Alternative,
     Element,
+    Group,
     Literal,
     Reference,
     Repeat,
@@ -123,6 +124,21 @@ class OperandRules:
         for name in found:
             found += [n for n in self.alone(name) if n not in found]
         return tuple(found)
+
+    def operators(self, rule: str) -> Iterator[tuple[Address, Element]]:
+        """Yield the operators of a rule that repeats operands behind one, with their addresses."""
+        for number, alternative in enumerate(self.grammar.by_name[rule].alternatives, 1):
+            for place, element in enumerate(alternative.elements, 1):
+                if isinstance(element, Repeat) and isinstance(element.item, Group):
+                    inner = element.item.alternatives[0].elements
+                    if len(inner) == 2:
+                        yield (number, place, 1, 1), inner[0]
+
+    @cached_property
+    def signs_between(self) -> frozenset[str]:
+        """The signs that operators are."""
+        operators = (operator for rule in self.ladder for _, operator in self.operators(rule))
+        return frozenset(e.text for o in operators for e in walk(o) if isinstance(e, Literal))
 
     @cached_property
     def values(self) -> str | None:

@@ -70,12 +70,18 @@ class BlockEdits:
         return rule in blocks or not blocks.isdisjoint(self.at.profile.near(rule))
 
     def _bodies(self, host: str) -> list[str]:
-        """Return the possible bodies of a block: those of the blocks that a rule already has."""
-        texts = [" ".join(body) for body in self.at.profile.bodies] or [
-            f"{rule}*" for rule in sorted(self.at.profile.loops & self.at.profile.choices_of_lines)
+        """Return the possible bodies of a block: those of the blocks that a rule already has.
+
+        Lines of one kind are enough where these have several in order.
+        """
+        bodies = self.at.profile.bodies or [
+            (f"{rule}*",)
+            for rule in sorted(self.at.profile.loops & self.at.profile.choices_of_lines)
         ]
         written = " ".join(self.at.grammar.by_name[host].text.split())
-        return [t for t in texts if t in written] or texts[:1]
+        found = [body for body in bodies if " ".join(body) in written] or bodies[:1]
+        parts = (part for body in found for part in body)
+        return list(dict.fromkeys([*map(" ".join, found), *parts]))
 
     def _block_text(self, block: BlockLines, body: str) -> str | None:
         end = self.at.profile.line_end

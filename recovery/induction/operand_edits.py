@@ -17,7 +17,7 @@ from grammar.notation.edits import (
     Replace,
     Widen,
 )
-from grammar.notation.model import Element, Group, Literal, Reference, Repeat, walk
+from grammar.notation.model import Element, Group, Literal, Reference, Repeat
 from recovery.brackets import BRACKETS
 from recovery.forms.lists import split_at_commas
 from recovery.forms.symbols import CLOSERS, Symbol
@@ -64,18 +64,13 @@ class OperandEdits:
                 breadth = RULE_SYMBOLS * (len(self.at.rules.ladder) - level)
                 title = f"{text} between operands"
                 yield InferredStep(title, edits, tuple(members), breadth=breadth)
-        between = {
-            e.text
-            for rule in self.at.rules.ladder
-            for _, operator in self._levels(rule)
-            for e in walk(operator)
-            if isinstance(e, Literal)
-        }
         for text, members in prefix.items():
             for rule in self._prefixed or filter(None, [self._operands]):
                 edits = (*self.forms.reserving(text), AddAlternative(rule, f"{text} {rule}"))
                 title = f"{text} ahead of an operand"
-                is_known = text.strip("'") in between  # a sign that operands have already
+                is_known = (
+                    text.strip("'") in self.at.rules.signs_between
+                )  # a sign that operands have already
                 yield InferredStep(title, edits, tuple(members), is_known=is_known)
 
     def _note_operator(
@@ -106,7 +101,7 @@ class OperandEdits:
         is_word = text[0] != "'"
         is_first = True
         for level, rule in enumerate(self.at.rules.ladder):
-            for at, operator in self._levels(rule):
+            for at, operator in self.at.rules.operators(rule):
                 if self._is_operator(operator, is_word=is_word):
                     yield (*words, Widen(rule, at, text)), level
                     is_first = False
@@ -114,15 +109,6 @@ class OperandEdits:
         if self._operands and (is_first or is_tighter):
             edits = (*words, *self._new_level(self._operands, text))
             yield edits, self.at.rules.ladder.index(self._operands)
-
-    def _levels(self, rule: str) -> Iterator[tuple[Address, Element]]:
-        """Yield the operators of a rule that repeats operands behind one, with their addresses."""
-        for number, alternative in enumerate(self.at.grammar.by_name[rule].alternatives, 1):
-            for place, element in enumerate(alternative.elements, 1):
-                if isinstance(element, Repeat) and isinstance(element.item, Group):
-                    inner = element.item.alternatives[0].elements
-                    if len(inner) == 2:
-                        yield (number, place, 1, 1), inner[0]
 
     def _new_level(self, rule: str, text: str) -> Iterator[Edit]:
         """Yield edits after which a rule repeats what it was, behind an operator."""

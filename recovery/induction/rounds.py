@@ -516,7 +516,8 @@ class Induction:
                 self._tried.add(edit)  # else lines may still fail ahead of it: it is tried again
                 return step
         enough = least[0], min(SEVERAL_FILES, len(self.shown.files))
-        for unknown in unknown_tokens(lines, recognizer.lexer, self.grammar.by_name):
+        between, known = OperandRules(recognizer).signs_between, self.grammar.by_name
+        for unknown in unknown_tokens(lines, recognizer.lexer, known, between):
             added: tuple[Edit, ...] = (AddRule(self.grammar.rules[-1].name, unknown.rule),)
             if spaced := spaced_literals(self.grammar, unknown.seen) if unknown.is_value else ():
                 added = spaced

@@ -36,13 +36,17 @@ class UnknownToken:
 
 
 def unknown_tokens(
-    lines: Iterable[tuple[str, int]], lexer: Lexer, known: Collection[str]
+    lines: Iterable[tuple[str, int]],
+    lexer: Lexer,
+    known: Collection[str],
+    operators: Collection[str] = (),
 ) -> Iterator[UnknownToken]:
     """Yield the unknown tokens of lines: quotes first, those of most files first.
 
     Each of ``lines`` comes with the number of its file. A character that nearly all lines have in
     pairs with no operand against the outside is a quote. Other ones that are always side by side
-    are one sign. No token has one of the ``known`` names.
+    are one sign. No token has one of the ``known`` names. ``operators`` are signs that the grammar
+    reads between operands, so that lines in which they stand alone may be none of these.
     """
     having: dict[str, set[int]] = defaultdict(set)
     paired: dict[str, list[bool]] = defaultdict(list)
@@ -64,11 +68,14 @@ def unknown_tokens(
             yield from _texts_in_quotes(every, sign, lexer, f"{_name(sign)}_TEXT", known)
         else:
             yield _token(_name(sign), _written(sign), known, False, having[sign], [sign])
-    yield from _compound_signs(every, lexer, known)
+    yield from _compound_signs(every, lexer, known, operators)
 
 
 def _compound_signs(
-    lines: Iterable[tuple[str, int]], lexer: Lexer, known: Collection[str]
+    lines: Iterable[tuple[str, int]],
+    lexer: Lexer,
+    known: Collection[str],
+    operators: Collection[str],
 ) -> Iterator[UnknownToken]:
     """Yield signs that the lexer takes for two: operands around them and no blank between.
 
@@ -76,7 +83,7 @@ def _compound_signs(
     """
     touching: dict[str, list[bool]] = defaultdict(list)
     having: dict[str, set[int]] = defaultdict(set)
-    between: set[str] = set()
+    between = set(operators)
     for line, file in lines:
         lexemes, offsets = lexer.located(line)
         found = [(t, at) for t, at in zip(lexemes, offsets, strict=True) if not t.isspace()]

@@ -59,6 +59,15 @@ def test_a_row_that_is_a_line_of_another_row() -> None:
     assert [True, False] == _accepts(rules, "x a\ny\nc\n", "x y\n")
 
 
+def test_brackets_behind_operands_have_a_rule() -> None:
+    """One for all that are alike; brackets with something else in them stay as they are."""
+    rules = "s : x ('(' NAME ')')? ;\nx : NAME ('[' x ']')? (',' NAME ('[' x ']')?)* ;"
+    grammar = read_foreign(f"grammar x;\n{rules}\n{_TOKENS}")
+    assert "x : NAME xBrackets? (',' NAME xBrackets?)* ;" == grammar.by_name["x"].text
+    assert "s : x ('(' NAME ')')? ;" == grammar.by_name["s"].text
+    assert [True, True, False] == _accepts(rules, "a[b[c],d](e)", "a,b[c]", "a(b[c])")
+
+
 def test_the_end_of_the_file_is_implied() -> None:
     """A start rule without EOF, also one that calls itself, reads to the end; lines stay."""
     for rules in ("s : NAME+ ;", "s : NAME s? ;", "s : file ;\nfile : NAME+ ;"):

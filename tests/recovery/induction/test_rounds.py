@@ -533,6 +533,18 @@ def test_a_start_in_another_style_grows() -> None:
         assert [True, True, *[False] * 5, True] == [recognizer.accepts(text) for text in more]
 
 
+def test_a_block_has_the_lines_that_it_is_seen_with() -> None:
+    """Others that a block beside it has behind them are none of it."""
+    texts = ("DEF A()\nDECL INT B\nX=1\nEND\n", "DEFDAT A\nDECL INT B\nDECL INT C\nENDDAT\n")
+    files = tuple(
+        CorpusFile(f"{o}/{n}", text, frozenset(o)) for o in "ABC" for n, text in enumerate(texts)
+    )
+    start = read_file(Path(__file__).with_name("nested_style.g4"), read_foreign)
+    recognizer = Recognizer(_grown(start, files).grammar)
+    more = (*texts, "DEFDAT A\nX=1\nENDDAT\n")
+    assert [True, True, False] == [recognizer.accepts(text) for text in more]
+
+
 @pytest.mark.parametrize("end", ["NEWLINE", "NEWLINE+", "eol"])
 def test_a_start_that_is_a_loop_of_lines_grows(
     toy: Grammar, toy_files: tuple[CorpusFile, ...], end: str

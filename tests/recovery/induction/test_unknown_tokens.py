@@ -51,6 +51,15 @@ def test_two_signs_stay_two(toy: Grammar, line: str) -> None:
     assert [] == list(unknown_tokens([(line, 0), ("X / Y * Z", 1)], lexer_of(toy), toy.by_name))
 
 
+@pytest.mark.parametrize(("line", "count"), [("X */ Y", 1), ("X * / Y", 0)])
+def test_two_signs_are_one_where_the_grammar_has_the_second_alone(
+    toy: Grammar, line: str, count: int
+) -> None:
+    """Between operands, as in lines that parse: these are not among those that fail."""
+    found = unknown_tokens([(line, 0)], lexer_of(toy), toy.by_name, {"/"})
+    assert count == len(list(found))
+
+
 def test_no_letter_is_a_sign(toy: Grammar) -> None:
     """A letter that names lack, and what is known, is no token."""
     assert list(unknown_tokens([("\xc4RGER := 1", 0)], lexer_of(toy), toy.by_name)) == []
