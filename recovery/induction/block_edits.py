@@ -72,16 +72,16 @@ class BlockEdits:
     def _bodies(self, host: str) -> list[str]:
         """Return the possible bodies of a block: those of the blocks that a rule already has.
 
-        Lines of one kind are enough where these have several in order.
+        Where these have lines of several kinds in order, those of one kind are enough.
         """
         bodies = self.at.profile.bodies or [
             (f"{rule}*",)
             for rule in sorted(self.at.profile.loops & self.at.profile.choices_of_lines)
         ]
         written = " ".join(self.at.grammar.by_name[host].text.split())
-        found = [body for body in bodies if " ".join(body) in written] or bodies[:1]
+        found = [body for body in bodies if " ".join(body) in written]
         parts = (part for body in found for part in body)
-        return list(dict.fromkeys([*map(" ".join, found), *parts]))
+        return list(dict.fromkeys([*map(" ".join, found or bodies[:1]), *parts]))
 
     def _block_text(self, block: BlockLines, body: str) -> str | None:
         end = self.at.profile.line_end
