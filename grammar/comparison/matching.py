@@ -16,21 +16,24 @@ _Counted = dict[_K, tuple[object, Counter[str]]]
 _LEAST = 0.6
 # With more unmatched items on one side, only equal ones are matched.
 _MOST = 300
-# Beyond so many lines, or pairs of equal lines, exact comparison takes long.
+# Beyond so many lines, or pairs of equal lines, `SequenceMatcher` takes long.
 _LONG = 5_000
 _MOST_PAIRS = 200_000
+# After so many edits the search for a short edit script begins anew where it has come furthest.
+_MOST_EDITS = 100
 
 
 #: ``equal``, ``replace``, ``delete`` or ``insert``, with its range in the old and the new list.
 _Operation = tuple[str, int, int, int, int]
+#: Equal lines: their first numbers in the old and the new list, and how many there are.
+_Run = tuple[int, int, int]
 
 
 def line_operations(old: Sequence[str], new: Sequence[str]) -> list[_Operation]:
     """Return the edit operations between two lists of lines, as `SequenceMatcher.get_opcodes` does.
 
     In long lists, lines that occur once in each list are anchors, as in a patience diff, and the
-    parts between them are compared on their own. There, lines that occur often are ignored at
-    first, as in `SequenceMatcher` with ``autojunk``.
+    parts between them are compared on their own; by `_common_runs` where lines recur very often.
     """
     anchors = _anchors(old, new) if len(old) + len(new) > _LONG else []
     found: list[_Operation] = []
@@ -49,8 +52,76 @@ def _exact(old: Sequence[str], new: Sequence[str]) -> list[_Operation]:
         return []
     one, other = Counter(old), Counter(new)
     pairs = sum(count * other[line] for line, count in one.items())
-    is_long = len(old) + len(new) > _LONG or pairs > _MOST_PAIRS
-    return list(SequenceMatcher(None, old, new, autojunk=is_long).get_opcodes())
+    if len(old) + len(new) <= _LONG and pairs <= _MOST_PAIRS:
+        return list(SequenceMatcher(None, old, new, autojunk=False).get_opcodes())
+    return list(_operations(_common_runs(old, new), len(old), len(new)))
+
+
+def _operations(runs: Iterable[_Run], old: int, new: int) -> Iterator[_Operation]:
+    """Yield the operations between runs of equal lines, for lists of that many lines."""
+    at = start = 0
+    for first, begin, size in (*runs, (old, new, 0)):
+        if (at, start) != (first, begin):
+            tag = "insert" if at == first else "delete" if start == begin else "replace"
+            yield tag, at, first, start, begin
+        at, start = first + size, begin + size
+        if size:
+            yield "equal", first, at, begin, start
+
+
+def _common_runs(old: Sequence[str], new: Sequence[str]) -> Iterator[_Run]:
+    """Yield runs of equal lines in order, by the greedy search of Myers (1986).
+
+    The edit script between them is the shortest if it has at most `_MOST_EDITS` edits in common
+    lines. After so many the search begins anew where it has come furthest, so the time grows with
+    the number of lines and not with its square.
+    """
+    both = set(old) & set(new)  # other lines are edits wherever the search goes
+    mine = [number for number, line in enumerate(old) if line in both]
+    theirs = [number for number, line in enumerate(new) if line in both]
+    lines = [old[number] for number in mine], [new[number] for number in theirs]
+    at = start = 0
+    while at < len(mine) and start < len(theirs):
+        for first, begin, size in _way(*lines, at, start):
+            for step in range(size):
+                yield mine[first + step], theirs[begin + step], 1
+            at, start = first + size, begin + size
+
+
+def _way(old: Sequence[str], new: Sequence[str], at: int, start: int) -> list[_Run]:
+    """Return the runs on the way from a place in both lists to their ends, or as far as it comes.
+
+    The last run is where it ends, and may be empty.
+    """
+    # by diagonal, the number of a line in the old list less that in the new one: the old line at
+    # which a run begins there after so many edits, the one behind the run, and the diagonal before
+    rounds: list[dict[int, tuple[int, int, int]]] = []
+    begun = {at - start: (at, at - start)}
+    ends = len(old), len(new)
+    while True:
+        reached: dict[int, tuple[int, int, int]] = {}
+        for diagonal, (first, before) in begun.items():
+            end = first
+            while end < ends[0] and end - diagonal < ends[1] and old[end] == new[end - diagonal]:
+                end += 1
+            reached[diagonal] = first, end, before
+        rounds.append(reached)
+        furthest = max(reached, key=lambda one: 2 * reached[one][1] - one)
+        end = reached[furthest][1]
+        if len(rounds) > _MOST_EDITS or (end, end - furthest) == ends:
+            break
+        begun = {}
+        for diagonal, (_, end, _) in reached.items():
+            for other, first in ((diagonal + 1, end + 1), (diagonal - 1, end)):
+                is_inside = first <= ends[0] and first - other <= ends[1]
+                if is_inside and first > begun.get(other, (-1, 0))[0]:
+                    begun[other] = first, diagonal
+    runs = []
+    for reached in reversed(rounds):
+        first, end, before = reached[furthest]
+        runs.append((first, first - furthest, end - first))
+        furthest = before
+    return runs[::-1]
 
 
 def _anchors(old: Sequence[str], new: Sequence[str]) -> list[tuple[int, int]]:

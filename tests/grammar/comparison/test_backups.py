@@ -240,11 +240,42 @@ def test_damaged_files_are_compared_all_the_same(text: str) -> None:
         assert [] == compare([Source(text, name)], [Source(text, name)])["routines"]
 
 
-def test_lines_that_come_up_again_and_again_are_left_aside() -> None:
-    """What recurs hundreds of times is not looked for behind a changed line; what is rarer is."""
-    like = ["IF B THEN", "ENDIF"]
-    found = [line_operations(["A", *like * n], ["B", *like * n]) for n in (200, 400)]
-    assert [["replace", "equal"], ["replace"]] == [[one[0] for one in codes] for codes in found]
+@pytest.mark.parametrize("count", [200, 400])
+def test_lines_that_come_up_again_and_again_are_found_behind_a_change(count: int) -> None:
+    """What recurs hundreds of times is compared as exactly as what is rarer."""
+    like = ["IF B THEN", "ENDIF"] * count
+    found = line_operations(["A", *like], ["B", *like])
+    assert ["replace", "equal"] == [one[0] for one in found]
+
+
+class _Line(str):
+    """A line that counts how often it is compared or hashed."""
+
+    __slots__ = ()
+    uses = 0
+
+    def __eq__(self, other: object) -> bool:
+        _Line.uses += 1
+        return str.__eq__(self, other)
+
+    def __hash__(self) -> int:
+        _Line.uses += 1
+        return str.__hash__(self)
+
+
+def test_few_lines_again_and_again_are_compared_in_linear_time() -> None:
+    """Twice as many lines are not more than twice the work, and only what was removed is told."""
+    works = []
+    for count in (3_000, 6_000):
+        old = [_Line(f"I=I+{number % 150}") for number in range(count)]
+        new = [line for number, line in enumerate(old) if number % 7 != 3]
+        _Line.uses = 0
+        found = line_operations(old, new)
+        works.append(_Line.uses)
+        assert {"equal", "delete"} == {one[0] for one in found}
+        removed = sum(last - first for tag, first, last, *_ in found if tag == "delete")
+        assert count - len(new) == removed
+    assert works[1] < 2.2 * works[0]
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -253,6 +284,7 @@ def test_long_lists_are_compared_between_lines_that_are_there_once(
 ) -> None:
     """The operations cover both lists in order, make one the other, and no two equal ones touch."""
     monkeypatch.setattr(matching, "_LONG", 10)
+    monkeypatch.setattr(matching, "_MOST_EDITS", 2 + seed)
     chance = Random(seed)
     old = [f"L{chance.randrange(90)}" for _ in range(60)]
     new = [line for line in old if chance.random() < 0.8]
