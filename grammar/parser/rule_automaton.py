@@ -7,7 +7,7 @@ automaton over characters.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from grammar.notation.model import Element, Grammar, Group, Literal, Reference, Repeat, Rule, walk
 from grammar.parser.nfa import Nfa
@@ -160,18 +160,7 @@ def _subsets(
 def _minimal(
     table: list[dict[Symbol, int]], final: list[bool], places: list[set[tuple[int, ...]]]
 ) -> RuleAutomaton:
-    block = [int(f) for f in final]
-    while True:  # of few states, simpler than Hopcroft's algorithm and faster
-        keys: dict[object, int] = {}
-        refined = [
-            keys.setdefault(
-                (block[s], frozenset((symbol, block[t]) for symbol, t in row.items())), len(keys)
-            )
-            for s, row in enumerate(table)
-        ]
-        if len(keys) == len(set(block)):
-            break
-        block = refined
+    block = _blocks(table, final)
     number: dict[int, int] = {}
     for b in block:  # states keep the order in which they are met; the start stays 0
         number.setdefault(b, len(number))
@@ -185,3 +174,43 @@ def _minimal(
         frozenset(number[block[s]] for s, f in enumerate(final) if f),
         tuple(map(frozenset, merged)),
     )
+
+
+def _blocks(table: Sequence[Mapping[Symbol, int]], final: Sequence[bool]) -> list[int]:
+    """Return a number for each state, the same for states from which the same can follow.
+
+    This is Hopcroft's algorithm: a block is divided by the states that lead into another one, and
+    only the smaller half is looked at again.
+    """
+    before: list[dict[Symbol, list[int]]] = [{} for _ in table]
+    kinds: dict[object, int] = {}
+    block: list[int] = []
+    for state, row in enumerate(table):
+        # what can follow at once tells states apart, so that each state of a block has each edge
+        block.append(kinds.setdefault((final[state], frozenset(row)), len(kinds)))
+        for symbol, target in row.items():
+            before[target].setdefault(symbol, []).append(state)
+    members: list[set[int]] = [set() for _ in kinds]
+    for state, number in enumerate(block):
+        members[number].add(state)
+    todo = set(range(len(members)))
+    while todo:
+        leading: dict[Symbol, set[int]] = {}
+        for target in members[todo.pop()]:
+            for symbol, states in before[target].items():
+                leading.setdefault(symbol, set()).update(states)
+        for found in leading.values():
+            parts: dict[int, set[int]] = {}
+            for state in found:
+                parts.setdefault(block[state], set()).add(state)
+            for number, part in parts.items():
+                whole = members[number]
+                if len(part) == len(whole):
+                    continue
+                whole -= part
+                for state in part:
+                    block[state] = len(members)
+                is_smaller = number in todo or len(part) <= len(whole)
+                todo.add(len(members) if is_smaller else number)
+                members.append(part)
+    return block

@@ -88,9 +88,13 @@ class Sentences:
         """Yield the rules an alternative calls, with the shortest tokens before and after each."""
         parts = [list(self._shortest(e)) for e in alternative.elements]
         for i, element in enumerate(alternative.elements):
-            left = [t for part in parts[:i] for t in part]
-            right = [t for part in parts[i + 1 :] for t in part]
-            yield from self._calls_in(element, left, right)
+            if isinstance(element, Group | Repeat) or self._is_rule(element):
+                left = [t for part in parts[:i] for t in part]
+                right = [t for part in parts[i + 1 :] for t in part]
+                yield from self._calls_in(element, left, right)
+
+    def _is_rule(self, element: Element) -> bool:
+        return isinstance(element, Reference) and element.name in self._rules
 
     def _calls_in(
         self, element: Element, left: list[str], right: list[str]
@@ -126,6 +130,8 @@ class Sentences:
         parts = [list(self._shortest(e)) for e in alternative.elements]
         yield [t for part in parts for t in part]
         for i, element in enumerate(alternative.elements):
+            if not isinstance(element, Group | Repeat):
+                continue
             left = [t for part in parts[:i] for t in part]
             right = [t for part in parts[i + 1 :] for t in part]
             for inner in self._element_variants(element):

@@ -1,11 +1,13 @@
 """A rule becomes a minimal deterministic automaton, which knows the addresses of its states."""
 
+from collections.abc import ItemsView
+
 import pytest
 
 from grammar.notation.addresses import element_at, sequences
 from grammar.notation.g4 import read
 from grammar.notation.model import Grammar, Literal, Reference
-from grammar.parser.rule_automaton import RuleAutomaton, rule_automaton
+from grammar.parser.rule_automaton import RuleAutomaton, _minimal, rule_automaton
 
 TOKENS = "A : 'a' ;\nB : 'b' ;\nC : 'c' ;\nCOMMA : ',' ;\nNEWLINE : '\\n' ;\n"
 
@@ -64,3 +66,25 @@ def test_places_name_what_is_read_there(name: str, request: pytest.FixtureReques
             assert {grammar.token_of(e) for e in symbols} <= set(edges)
         expected = {(*at, n) for at, size in lengths.items() for n in range(1, size + 2)}
         assert expected == set().union(*automaton.places)
+
+
+class _Row(dict[str, int]):
+    """The edges of a state, which count how often they are looked through."""
+
+    uses = 0
+
+    def items(self) -> ItemsView[str, int]:
+        _Row.uses += 1
+        return super().items()
+
+
+def test_a_long_sequence_is_made_minimal_in_linear_time() -> None:
+    """Each state of a chain is looked at a few times, however long the chain is."""
+    works = []
+    for count in (200, 400):
+        table: list[dict[str, int]] = [_Row(A=number + 1) for number in range(count)]
+        _Row.uses = 0
+        found = _minimal([*table, _Row()], [False] * count + [True], [set()] * (count + 1))
+        assert count + 1 == len(found.edges)
+        works.append(_Row.uses)
+    assert works[1] < 2.2 * works[0]
