@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import PurePosixPath
 
@@ -121,13 +121,13 @@ class Source:
                 line, column = self.place(offset)
                 yield Comment(line, column, offset, found.group(1))
 
+    @cached_property
+    def _comment_of_line(self) -> Mapping[int, Comment]:
+        return {comment.line: comment for comment in self.comments}
+
     def comment(self, line: int) -> Comment | None:
         """Return the comment of a line, whether after code or alone; a line has at most one."""
-        for found in _COMMENT.finditer(self.line(line)):
-            if found.group(1) is not None:
-                column = found.start() + 1
-                return Comment(line, column, self.offset(line, column), found.group(1))
-        return None
+        return self._comment_of_line.get(line)
 
     # ----------------------------------------------------------------------------- folds
 
@@ -151,11 +151,13 @@ class Source:
 
     def _fold_marks(self) -> Iterator[tuple[int, str | None]]:
         """Yield the lines that begin or end a fold, with the title or ``None``."""
+        last = 0
         for found in _MARK.finditer(self.text):
             line, column = self.place(found.start())
-            before = self.text[found.start() - column + 1 : found.start()]
+            before = self.text[found.start() - column + 1 : found.start()] if line != last else ";"
             if not before.strip(" \t"):
                 yield line, found[1]
+            last = line
 
     def _folds(self) -> Iterator[Fold]:
         opened: list[tuple[int, str]] = []

@@ -1,12 +1,16 @@
 """A source knows its lines, its comments and its folds, also where the text is no program."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import SupportsIndex
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.parser.tree import Tree
+from grammar.syntax import source as source_module
 from grammar.syntax.build import builder
 from grammar.syntax.source import Comment, Fold, Source
 
@@ -111,6 +115,45 @@ def test_folds_that_do_not_match() -> None:
 def test_what_is_no_fold() -> None:
     """Words that begin like FOLD, and folds behind code or in another comment, are none."""
     assert [] == folds(";FOLDER", ";UNFOLD a", "X=1 ;FOLD a", ";;FOLD a", ";ENDFOLDS", ";ENDFOLD")
+
+
+class _Text(str):
+    """A text that counts the characters that are taken out of it."""
+
+    __slots__ = ()
+    taken = 0
+
+    def __getitem__(self, key: SupportsIndex | slice) -> str:
+        found = str.__getitem__(self, key)
+        _Text.taken += len(found)
+        return found
+
+
+def test_ends_of_folds_in_one_line_are_not_dearer_than_the_line() -> None:
+    """Only the first of a line can be one, and what is in front of the others is not looked at."""
+    works = []
+    for count in (100, 200):
+        source = Source(_Text("HALT " + ";ENDFOLD" * count))
+        _Text.taken = 0
+        assert ((), ()) == source.unbalanced_folds
+        works.append(_Text.taken)
+    assert works[1] <= 2 * works[0]
+
+
+def test_a_line_is_searched_once_for_its_comment(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However often a line is asked for its comment, its characters are looked at once."""
+    searched: list[int] = []
+
+    class Pattern:
+        def finditer(self, text: str) -> Iterator[re.Match[str]]:
+            searched.append(len(text))
+            return comments.finditer(text)
+
+    comments = source_module._COMMENT
+    monkeypatch.setattr(source_module, "_COMMENT", Pattern())
+    source = Source("HALT\nI=1 ; one\n")
+    assert ["; one"] * 50 == [found.text for _ in range(50) if (found := source.comment(2))]
+    assert [len(source.text)] == searched
 
 
 def test_parameters_of_the_teach_pendant() -> None:
