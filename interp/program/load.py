@@ -149,6 +149,15 @@ class CheckedProgram:
             one.table.routine: one for unit in self.units.values() for one in self.routines_of(unit)
         }
 
+    @cached_property
+    def routines_by_name(self) -> Mapping[tuple[str, str], Routine]:
+        """The first routine of each name in a file, by path and by name in upper case."""
+        found: dict[tuple[str, str], Routine] = {}
+        for unit in self.units.values():
+            for one in self.routines_of(unit):
+                found.setdefault((unit.module.path, one.node.name.key), one)
+        return found
+
     def unit_of(self, file: str) -> Unit | None:
         """Return the file with a path, or ``None`` if the project has none."""
         return next((one for one in self.units.values() if one.module.path == file), None)

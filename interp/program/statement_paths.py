@@ -11,9 +11,7 @@ from interp.program.load import CheckedProgram, Routine
 
 def routine_at(program: CheckedProgram, file: str, name: str) -> Routine | None:
     """Return the routine of a file by its name, or ``None`` if there is none."""
-    unit = program.unit_of(file)
-    routines = () if unit is None else program.routines_of(unit)
-    return next((one for one in routines if one.node.name.key == name.upper()), None)
+    return program.routines_by_name.get((file, name.upper()))
 
 
 def statement_lines(routine: Routine) -> set[int]:
@@ -29,10 +27,12 @@ def statement_lines(routine: Routine) -> set[int]:
 
 def statements(body: Sequence[ast.Statement]) -> Iterator[ast.Statement]:
     """Yield all statements of a body, including those in blocks."""
-    for statement in body:
+    todo = [*reversed(body)]
+    while todo:
+        statement = todo.pop()
         yield statement
-        for inner in _bodies(statement):
-            yield from statements(inner)
+        for inner in reversed([*_bodies(statement)]):
+            todo += reversed(inner)
 
 
 def way_to(routine: Routine, line: int) -> tuple[ast.Statement, ...]:

@@ -1,5 +1,7 @@
 """Breakpoints on lines, data breakpoints, and stops at faults."""
 
+from bisect import bisect_left
+
 from interp.debugging.breakpoints import is_hit
 from interp.debugging.client import Breakpoint, Watch
 from interp.debugging.conditions import parsed
@@ -37,7 +39,8 @@ class Breakpoints:
         made: list[Breakpoint] = []
         for one in arguments.all("breakpoints"):
             wanted = self._program.line_of(one.get("line", int, 0))
-            line = next((line for line in lines if line >= wanted), None)
+            place = bisect_left(lines, wanted)
+            line = lines[place] if place < len(lines) else None
             text = "no statement begins here" if line is None else self._wrong(one)
             if line is None or text:
                 found.append({"verified": False, "message": text})

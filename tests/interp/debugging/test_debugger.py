@@ -21,7 +21,8 @@ from interp.native import AVAILABLE
 from interp.port.events import Recorder, Sink
 from interp.port.inspection import Inspectable
 from interp.port.requests import DeclareInterrupt, End, Fail, Request, Slice, Wait, Write
-from interp.program.load import CheckedProgram, Limits, load
+from interp.program.load import CheckedProgram, Limits, Routine, Unit, load
+from interp.program.statement_paths import routine_at
 from interp.values.faults import LinkError
 
 EXECUTORS = ("tree", "vm", *(["native"] if AVAILABLE else []))
@@ -216,6 +217,23 @@ def test_lines_at_which_a_program_can_stop(debug: Any) -> None:
 
 
 # ------------------------------------------------------------------------------- steps
+
+
+def test_a_routine_is_found_without_a_look_at_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Finding the routine of a frame again and again lists the routines of a file once."""
+    program = program_of("DEF MAIN()\nEND\n" + "".join(f"DEF B{n}()\nEND\n" for n in range(30)))
+    listed: list[Unit] = []
+    routines_of = CheckedProgram.routines_of
+
+    def counted(self: CheckedProgram, unit: Unit) -> tuple[Routine, ...]:
+        listed.append(unit)
+        return routines_of(self, unit)
+
+    monkeypatch.setattr(CheckedProgram, "routines_of", counted)
+    path = program.main.module.path
+    found = [routine_at(program, path, f"B{n}") for n in range(30)]
+    assert [f"B{n}" for n in range(30)] == [one.name for one in found if one is not None]
+    assert len(listed) == len(program.units)
 
 
 def test_frames_tell_who_called_from_where(debug: Any) -> None:
