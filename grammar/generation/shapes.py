@@ -62,6 +62,8 @@ SHAPES: Final[Mapping[str, Shape]] = {
     "declarations and uses": Shape("INT I{i}\n", head="DEF A()\n", middle="", closing="I1=I1+1\n"),
     "labels and jumps": Shape("L{i}:\nIF B THEN\nGOTO L{i}\nENDIF\n"),
     "interrupts": Shape("INTERRUPT DECL 3 WHEN $IN[{i}] DO A()\n"),
+    "few lines again and again": Shape("".join(f"I=I+{n}\n" for n in range(150))),
+    "ends of folds in one line": _line("", ";ENDFOLD", ""),
     # blocks
     "IF beside IF": Shape("IF B THEN\nI=1\nELSE\nI=2\nENDIF\n"),
     "IF in IF": Shape("IF B THEN\n", closing="ENDIF\n"),
@@ -85,6 +87,8 @@ SHAPES: Final[Mapping[str, Shape]] = {
     # expressions
     "a long sum": _line("I=1", "+1", ""),
     "a long sum of products": _line("R=1", "+2*R-3/R", ""),
+    "a long sum beside an umlaut": _line("I=1", "+I", " ; \xe4"),
+    "unknown names in one line": _line("I=1", "+U{i}", ""),
     "a long condition": _line("B=TRUE", " AND B OR NOT B", ""),
     "brackets in brackets": _line("I=", "(", "", middle="1", closing=")"),
     "NOT of NOT": _line("B=", "NOT ", "TRUE"),

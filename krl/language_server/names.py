@@ -7,7 +7,7 @@ completed, too.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
@@ -25,12 +25,9 @@ from krl.language_server.symbols import seen_everywhere, type_name
 from krl.language_server.workspace import AnalysedFile, OpenProject, certain
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_$]{0,23}")
-_WORD = re.compile(r"[$\w]*$")
+_WORD = re.compile(r"[$\w]*")
 _TEXT = re.compile(r'"[^"]*"')
-_PLACE = r"([$A-Za-z_][\w$]*(?:\[[^\]]*\])?(?:\.\w*(?:\[[^\]]*\])?)*)"
-_MEMBER = re.compile(rf"{_PLACE}\.\w*$")
-#: A hash behind a place that it is assigned to or compared with.
-_COMPARED = re.compile(rf"{_PLACE}\s*[<>=]+\s*#\s*\w*$")
+_TOKEN = re.compile(r"[$A-Za-z_][\w$]*|\d[\w.]*|\S")
 
 
 class RenameError(ValueError):
@@ -141,21 +138,53 @@ def completions(looked: AnalysedFile, offset: int) -> list[Candidate]:
     before = looked.source.line(line)[: column - 1]
     if set(_TEXT.sub("", before)) & {";", '"'}:
         return []
-    if re.search(r"#\s*\w*$", before):
-        compared = _COMPARED.search(before)
-        type_ = _type_of(looked, line, compared[1]) if compared is not None else None
+    start = _word_start(before)
+    front = before[:start].rstrip()
+    if front.endswith("#"):
+        value = front[:-1].rstrip()
+        compared = _place_at_end(value.rstrip("<>=")) if value.endswith(("<", ">", "=")) else ()
+        type_ = _type_of(looked, line, compared)
         if type_ is not None and type_.kind is Kind.ENUMERATION:
             found = _constants_of(type_)
         else:
             found = _constants(looked)
-    elif (member := _MEMBER.search(before)) is not None:
-        found = _members(looked, line, member[1])
-    elif re.search(r"\bGOTO\s+\w*$", before, re.IGNORECASE):
+    elif front.endswith(".") and (place := _place_at_end(front[:-1])):
+        found = _members(looked, line, place)
+    elif re.search(r"\bGOTO$", front, re.IGNORECASE) and len(front) < start:
         found = _labels(looked, line)
     else:
-        start = offset - len(before) + len(_WORD.sub("", before))
-        found = chain(_keywords(looked.source.text[:start]), _visible(looked, line))
+        begun = offset - len(before) + start
+        found = chain(_keywords(looked.source.text[:begun]), _visible(looked, line))
     return list({one.name.upper(): one for one in reversed([*found])}.values())[::-1]
+
+
+def _word_start(text: str) -> int:
+    """Return where the word begins with which a text ends."""
+    found = _WORD.match(text[::-1])  # from the front, each letter of a word would be tried
+    return len(text) - (found.end() if found else 0)
+
+
+def _place_at_end(text: str) -> tuple[str, ...]:
+    """Return the variable and the members with which a text ends, without indices: A, B in A[1].B.
+
+    The tuple is empty if it ends with something else.
+    """
+    outer: list[list[str]] = []
+    place: list[str] = []
+    last = ""
+    for token in _TOKEN.findall(text):
+        is_name = token[0].isalpha() or token[0] in "$_"
+        if token == "[":
+            outer.append(place)
+            place = []
+        elif token == "]":
+            place = outer.pop() if outer else []
+        elif is_name and last == "." and place:
+            place.append(token.upper())
+        elif token != "." or last == ".":
+            place = [token.upper()] if is_name else []
+        last = token
+    return tuple(place) if last != "." else ()
 
 
 def _keywords(before: str) -> Iterator[Candidate]:
@@ -226,20 +255,19 @@ def _constants_of(type_: TypeSymbol) -> Iterator[Candidate]:
         yield Candidate(member.name, Kind.ENUM_CONSTANT, type_.name)
 
 
-def _members(looked: AnalysedFile, line: int, place: str) -> Iterator[Candidate]:
+def _members(looked: AnalysedFile, line: int, place: Sequence[str]) -> Iterator[Candidate]:
     type_ = _type_of(looked, line, place)
     for member in type_.members.values() if type_ is not None else ():
         yield Candidate(member.name, Kind.MEMBER, type_name(member))
 
 
-def _type_of(looked: AnalysedFile, line: int, place: str) -> TypeSymbol | None:
-    """Return the type of an expression such as ``A.B[1]`` if it is a structure or enumeration."""
+def _type_of(looked: AnalysedFile, line: int, place: Sequence[str]) -> TypeSymbol | None:
+    """Return the type of a variable or of its member if it is a structure or enumeration."""
     scope = looked.scope(line)
-    if scope is None:
+    if scope is None or not place:
         return None
-    first, *others = (re.sub(r"\[.*", "", part).upper() for part in place.split("."))
-    found: Answer = certain(scope.find(Space.VALUE, first))
-    for name in others:
+    found: Answer = certain(scope.find(Space.VALUE, place[0]))
+    for name in place[1:]:
         structure = found.type_symbol() if isinstance(found, Found) else None
         symbol = structure.symbol if isinstance(structure, Found) else None
         member = symbol.members.get(name) if isinstance(symbol, TypeSymbol) else None

@@ -6,7 +6,9 @@ both from 1, in characters.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable
+from functools import lru_cache
 from pathlib import Path
 
 from lsprotocol import types as lsp
@@ -74,11 +76,16 @@ def characters(line: str, units: int) -> int:
     return len(line)
 
 
+@lru_cache(maxsize=16)
+def _wide(line: str) -> tuple[int, ...]:
+    """Return the places of the characters of a line that are two UTF-16 code units each."""
+    return tuple(place for place, one in enumerate(line) if ord(one) > 0xFFFF)
+
+
 def _units(line: str, characters: int) -> int:
     """Return the number of UTF-16 code units in the first ``characters`` of a line."""
-    if line.isascii():
-        return min(characters, len(line))
-    return len(line[:characters].encode("utf-16-le", "surrogatepass")) // 2
+    characters = min(characters, len(line))
+    return characters if line.isascii() else characters + bisect_left(_wide(line), characters)
 
 
 def _position(source: Source, line: int, column: int) -> lsp.Position:

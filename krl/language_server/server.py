@@ -134,7 +134,7 @@ class _Handlers:
                     await asyncio.sleep(0)
                 logging.getLogger(__name__).info("%d files below %s", count, path)
         self._is_read = True
-        self._publish()
+        self._publish(*sorted(self._open))
 
     @_answers(lsp.TEXT_DOCUMENT_DID_OPEN)
     def opened(self, given: lsp.DidOpenTextDocumentParams) -> None:
@@ -149,7 +149,7 @@ class _Handlers:
         self._open[path] = uri
         self.project.change(path, given.text_document.text)
         self.project.changed()  # an editor need not watch the settings
-        self._publish()
+        self._publish(path)
 
     @_answers(lsp.TEXT_DOCUMENT_DID_CHANGE)
     def changed(self, given: lsp.DidChangeTextDocumentParams) -> None:
@@ -158,7 +158,7 @@ class _Handlers:
         path = path_of(document.uri)
         if path in self._open:
             self.project.change(path, document.source)
-            self._publish()
+            self._publish(path)
 
     @_answers(lsp.TEXT_DOCUMENT_DID_CLOSE)
     def closed(self, given: lsp.DidCloseTextDocumentParams) -> None:
@@ -175,39 +175,40 @@ class _Handlers:
         """Read the files that changed outside the editor."""
         for change in given.changes:
             self.project.changed_on_disk(path_of(change.uri), self._open)
-        self._publish()
+        self._publish(*sorted(self._open))
 
-    def _publish(self) -> None:
-        """Publish the findings of all open files, since a change in one can affect the others.
+    def _publish(self, *paths: str) -> None:
+        """Publish the findings of open files; soon also those of all others that a change affects.
 
         Nothing is published before the folder is read, because names would be reported as missing.
         """
         if not self._is_read:
             return
-        self._tell_open()
+        for path in paths:
+            self._tell_file(path)
+        self._tell_refused()
         if self._catching_up is not None:
             self._catching_up.cancel()
         self._catching_up = asyncio.get_running_loop().create_task(self._catch_up())
 
     async def _catch_up(self) -> None:
-        """Check all files that a change affects, after a pause in typing."""
+        """Check all files that a change affects, after a pause in typing; then publish."""
         if self._is_graded:
             await asyncio.sleep(_PAUSE)
-        count = 0
         for _ in self.project.catch_up():
-            count += 1
             await asyncio.sleep(0)
         self._is_graded = True
-        if count:
-            self._tell_open()
+        for path in sorted(self._open):
+            self._tell_file(path)
+            await asyncio.sleep(0)
 
-    def _tell_open(self) -> None:
-        for path, uri in sorted(self._open.items()):
-            looked = self.project.look(path)
-            if looked is not None:
-                self._tell(
-                    uri, [protocol.diagnostic(looked.source, one) for one in looked.diagnostics]
-                )
+    def _tell_file(self, path: str) -> None:
+        looked = self.project.look(path)
+        if looked is not None and path in self._open:
+            found = [protocol.diagnostic(looked.source, one) for one in looked.diagnostics]
+            self._tell(self._open[path], found)
+
+    def _tell_refused(self) -> None:
         refused = self.project.refused
         for file in self._refused | refused.keys():
             self._tell(file.as_uri(), [protocol.refusal(refused[file])] if file in refused else [])

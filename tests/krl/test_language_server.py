@@ -5,16 +5,24 @@ import json
 import subprocess
 import sys
 import zipfile
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 pytest.importorskip("lsprotocol")
 
 from grammar.check.project.batch import CheckOptions, check_paths
+from grammar.check.project.framework import Checked, check_module
 from grammar.diagnostics.diagnostic import Region
+from grammar.semantics.link import Project
+from grammar.semantics.scopes import Module
 from grammar.syntax.source import Source
 from krl.cli import main
+from krl.commands.bench.growth_entries import tabs
+from krl.commands.lsp import Bounded
+from krl.language_server import workspace
 from krl.language_server.calls import argument_hints, signature_at
 from krl.language_server.hover import hover
 from krl.language_server.names import (
@@ -23,7 +31,8 @@ from krl.language_server.names import (
     places,
     renaming,
 )
-from krl.language_server.protocol import characters, range_of
+from krl.language_server.protocol import _wide, characters, range_of
+from krl.language_server.server import server
 from krl.language_server.workspace import OpenProject
 
 PROGRAM = """DEF CELL()
@@ -44,6 +53,7 @@ DATA = """DEFDAT CELL
   DECL STATES BASE_OF
   DECL FRAME SPOT
   DECL INT PARTS=8
+  DECL FRAME SPOTS[9]
 ENDDAT
 """
 OTHER = "DEF OTHER()\n  INT PARTS\n  PARTS = 1\n  FETCH(PARTS)\nEND\n"
@@ -180,6 +190,9 @@ def test_a_name_that_cannot_be_is_refused(
         ("  $IPO_MODE=#B", {"BASE", "TCP"}, {"EMPTY", "JOINT"}),
         ("  FETCH(#", {"EMPTY", "FULL", "BASE", "JOINT"}, {"N", "PARTS"}),
         ("  SPOT.", {"X", "Y", "Z", "A", "B", "C"}, {"N", "S"}),
+        ("  SPOTS[SPOT.X].", {"X", "Y", "Z", "A", "B", "C"}, {"N", "S"}),
+        ("  SPOTS[SPOTS[1].X].", {"X", "Y", "Z", "A", "B", "C"}, {"N", "S"}),
+        ("  N = SPOTS[SPOT.", {"X", "Y", "Z", "A", "B", "C"}, {"N", "S"}),
     ],
 )
 def test_what_can_be_written_is_offered(
@@ -464,6 +477,35 @@ def test_hover_over_a_word_of_two_statements_begins_with_its_own(project: OpenPr
     said = hover(project, looked, looked.source.text.index("FOR"))
     assert said is not None
     assert "WAIT FOR" not in said[0].split("**")[2]
+
+
+def test_a_line_is_looked_through_once_for_all_its_columns() -> None:
+    """A line with letters beyond ASCII is no dearer for the many names in it."""
+    source = Source("I=1" + "+I" * 500 + " ; ä𝄞", "a.src")
+    before = _wide.cache_info().misses
+    for place in range(1, 1000):
+        range_of(source, Region(1, place, 1, place + 1))
+    assert before + 1 == _wide.cache_info().misses
+
+
+def test_a_tab_that_is_opened_is_checked_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Opening a file checks it once, and not all that are open with it again."""
+    checked: list[str] = []
+
+    def counted(project: Project, module: Module, source: Source) -> Checked:
+        checked.append(source.path)
+        return check_module(project, module, source)
+
+    monkeypatch.setattr(workspace, "check_module", counted)
+    for number in range(20):
+        (tmp_path / f"A{number}.src").write_text(f"DEF A{number}()\nEND\n", encoding="ascii")
+    with suppress(SystemExit):
+        messages: Any = Bounded(io.BytesIO(tabs(tmp_path)))
+        server().start_io(messages, io.BytesIO())
+    assert 20 == len({*checked})
+    assert len(checked) <= 60
 
 
 @pytest.mark.parametrize("line", ["HALT ; all", "HALT ; ä", "HALT ; 𝄞 and 𝄞𝄞"])

@@ -79,9 +79,9 @@ class _Calls:
         }
         places["small"].write_text(PROGRAM, encoding="ascii")
         if "{other}" in self.entry.words:
-            lines = file.read_text(encoding="ascii").splitlines(keepends=True)
+            lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
             kept = (line for number, line in enumerate(lines) if number % 7 != 3)
-            places["other"].write_text("".join(kept), encoding="ascii")
+            places["other"].write_text("".join(kept), encoding="utf-8")
         return places
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
@@ -29,10 +29,19 @@ def _archive(folder: Path, size: int) -> Path:
     return path
 
 
+def _folder(folder: Path, size: int) -> Path:
+    """Return a folder with many small files that name one another."""
+    count = max(1, size // 100)
+    for i in range(count):
+        text = f"DEF A{i}()\nINT I\nI=1\nA{(i + 1) % count}()\nEND\n"
+        (folder / f"A{i}.src").write_text(text, encoding="ascii", newline="")
+    return folder
+
+
 def _written(shape: Shape) -> Writer:
     def write(folder: Path, size: int) -> Path:
         path = folder / shape.name
-        path.write_text(shape.text(size), encoding="ascii", newline="")
+        path.write_text(shape.text(size), encoding="utf-8", newline="")
         return path
 
     return write
@@ -46,39 +55,124 @@ def _shapes(shapes: Mapping[str, Shape], name: str | None = None) -> dict[str, W
     }
 
 
+def _beside_program(inputs: Mapping[str, Writer]) -> dict[str, Writer]:
+    """Return functions that also write a program into the folder of the file."""
+
+    def beside(writer: Writer) -> Writer:
+        def write(folder: Path, size: int) -> Path:
+            (folder / "a.src").write_text(PROGRAM, encoding="ascii", newline="")
+            return writer(folder, size)
+
+        return write
+
+    return {title: beside(writer) for title, writer in inputs.items()}
+
+
 _PROGRAMS: Final = _shapes(SHAPES)
 _G4: Final = "grammar G;\nfile : a* EOF ;\na : 'X'"
 _G4_END: Final = " ;\nX : 'X' ;\nNAME : [A-Z]+ ;\n"
 
 
+#: A message of an editor: its method, whether it is a request, its parameters.
+_Message = tuple[str, bool, Any]
+_AT_CURSOR: Final = (
+    *("hover", "definition", "completion", "signatureHelp", "documentHighlight", "references"),
+    *("prepareRename", "rename"),
+)
+
+
+def _opened(file: Path, text: str) -> _Message:
+    document = {"uri": file.as_uri(), "languageId": "krl", "version": 1, "text": text}
+    return "textDocument/didOpen", False, {"textDocument": document}
+
+
 def _messages(file: Path) -> bytes:
     """Return the messages of an editor that opens a file, requests its features, and exits."""
     uri = {"uri": file.as_uri()}
-    text = file.read_text(encoding="ascii")
-    opened = {"textDocument": {**uri, "languageId": "krl", "version": 1, "text": text}}
+    text = file.read_text(encoding="utf-8")
     changed = {
         "textDocument": {**uri, "version": 2},
         "contentChanges": [{"text": text + "; changed\n"}],
     }
     asked = ("documentSymbol", "semanticTokens/full", "foldingRange", "formatting")
     wanted = {"textDocument": uri, "options": {"tabSize": 2, "insertSpaces": True}}
-    said: list[tuple[str, bool, Any]] = [
-        ("initialize", True, {"processId": None, "rootUri": None, "capabilities": {}}),
+    return _session(
+        [
+            _opened(file, text),
+            *((f"textDocument/{what}", True, wanted) for what in asked),
+            ("textDocument/didChange", False, changed),
+            ("textDocument/documentSymbol", True, wanted),
+        ]
+    )
+
+
+def _questions(file: Path) -> bytes:
+    """Return the messages of an editor that asks about the longest line of a file, and all lines.
+
+    The cursor is in the middle of the line, then at its end.
+    """
+    uri = {"uri": file.as_uri()}
+    text = file.read_text(encoding="utf-8")
+    lines = text.split("\n")
+    number = max(range(len(lines)), key=lambda number: len(lines[number]))
+    ends = {"start": {"line": 0, "character": 0}, "end": {"line": len(lines), "character": 0}}
+    whole = {"textDocument": uri, "range": ends, "context": {"diagnostics": []}}
+    said = [_opened(file, text)]
+    for column in (len(lines[number]) // 2, len(lines[number])):
+        place = {"line": number, "character": column}
+        at = {"textDocument": uri, "position": place, "newName": "Q"}
+        at["context"] = {"includeDeclaration": True}
+        said += [(f"textDocument/{what}", True, at) for what in _AT_CURSOR]
+    said += [(f"textDocument/{what}", True, whole) for what in ("codeAction", "inlayHint")]
+    return _session([*said, ("workspace/symbol", True, {"query": "A"})])
+
+
+def tabs(folder: Path) -> bytes:
+    """Return the messages of an editor that opens all files of a folder."""
+    files = sorted(folder.rglob("*.src"))
+    return _session([_opened(file, file.read_text(encoding="utf-8")) for file in files])
+
+
+def _session(said: Sequence[_Message]) -> bytes:
+    """Return the messages of an editor from its start to its end, framed."""
+    start: dict[str, Any] = {"processId": None, "rootUri": None, "capabilities": {}}
+    whole: list[_Message] = [
+        ("initialize", True, start),
         ("initialized", False, {}),
-        ("textDocument/didOpen", False, opened),
-        *((f"textDocument/{what}", True, wanted) for what in asked),
-        ("textDocument/didChange", False, changed),
-        ("textDocument/documentSymbol", True, wanted),
+        *said,
         ("shutdown", True, None),
         ("exit", False, None),
     ]
-    bodies = [
-        json.dumps(
-            {"jsonrpc": "2.0", "method": method, "params": params}
-            | ({"id": number} if is_request else {})
-        ).encode()
-        for number, (method, is_request, params) in enumerate(said)
-    ]
+    return _framed(
+        {"jsonrpc": "2.0", "method": method, "params": params}
+        | ({"id": number} if is_request else {})
+        for number, (method, is_request, params) in enumerate(whole)
+    )
+
+
+def _breakpoints(file: Path) -> bytes:
+    """Return the messages of an editor that sets a breakpoint on each line of a program."""
+    source = {"path": str(file)}
+    lines = file.read_text(encoding="utf-8").count("\n")
+    asked: dict[str, Any] = {
+        "initialize": {},
+        "launch": {"program": str(file)},
+        "setBreakpoints": {
+            "source": source,
+            "breakpoints": [{"line": line + 1} for line in range(lines)],
+        },
+        "breakpointLocations": {"source": source, "line": 1, "endLine": lines},
+        "configurationDone": {},
+        "disconnect": {},
+    }
+    return _framed(
+        {"seq": number, "type": "request", "command": name, "arguments": arguments}
+        for number, (name, arguments) in enumerate(asked.items(), 1)
+    )
+
+
+def _framed(messages: Iterable[Mapping[str, Any]]) -> bytes:
+    bodies = (json.dumps(one).encode() for one in messages)
     return b"".join(b"Content-Length: %d\r\n\r\n%b" % (len(body), body) for body in bodies)
 
 
@@ -121,19 +215,32 @@ ENTRIES: Final[Mapping[str, GrowthEntry]] = {
         "debug --robot none --max-time 1 {file}", said=lambda _: b"step\n" * 20 + b"continue\n"
     ),
     "lsp": GrowthEntry("lsp", said=_messages),
+    "lsp questions": GrowthEntry("lsp", said=_questions),
+    "lsp tabs": GrowthEntry("lsp", {"files": _folder}, said=tabs),
+    "debug watched": GrowthEntry(
+        "debug --robot none --max-time 1 {file}",
+        said=lambda _: b"watch I\nbreak 5 if I==-1\nstep\ncontinue\n",
+    ),
+    "debug adapter": GrowthEntry("debug --dap --robot none --max-time 1", said=_breakpoints),
     "diff": GrowthEntry("diff {file} {small}"),
     "diff both": GrowthEntry("diff {file} {other}"),
     "check archive": GrowthEntry("check --no-cache {file}", {"members": _archive}),
     "test": GrowthEntry(
         "test {file}",
-        _shapes(
-            {
-                "tests": Shape('[[test]]\nname = "{i}"\nexpect = ["ends before 1"]\n', "", ""),
-                "expectations": Shape('"out {i} never",\n', _ONE_TEST, "]\n"),
-                "inputs of a test": Shape('"t=0.{i} IN[1]=TRUE",\n', "io = [\n", "]\n" + _A_TEST),
-                "statements before": Shape('"$FLAG[1] = TRUE",\n', "before = [\n", "]\n" + _A_TEST),
-            },
-            "test_a.toml",
+        _beside_program(
+            _shapes(
+                {
+                    "tests": Shape('[[test]]\nname = "{i}"\nexpect = ["ends before 1"]\n', "", ""),
+                    "expectations": Shape('"out {i} never",\n', _ONE_TEST, "]\n"),
+                    "inputs of a test": Shape(
+                        '"t=0.{i} IN[1]=TRUE",\n', "io = [\n", "]\n" + _A_TEST
+                    ),
+                    "statements before": Shape(
+                        '"$FLAG[1] = TRUE",\n', "before = [\n", "]\n" + _A_TEST
+                    ),
+                },
+                "test_a.toml",
+            )
         ),
     ),
     "conform": GrowthEntry(
