@@ -79,9 +79,8 @@ class EditWriter:
         """Yield the edits that write symbols at a site, with steps in breadth."""
         rule, place = site.rule, site.place
         match site.kind:
-            case "alternative" if not self._profile.closing(
-                rule
-            ):  # else it is of the kind ``line``
+            # Where all alternatives end a line, there is a site of the kind ``line``.
+            case "alternative" if self._profile.closing(rule) is None:
                 yield from self._alternative(rule, symbols)
             case "line":
                 yield from self._alternative(rule, (*symbols, self._profile.line_end))
