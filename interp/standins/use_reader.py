@@ -297,8 +297,9 @@ class _Reader:
 
     def _declared(self, node: ast.Expression) -> Symbol | None:
         """Return the variable that an expression is, if a file declares it."""
-        is_one = isinstance(node, ast.Variable) and not self._is_undeclared(node.name)
-        found = self._checked.resolution.found(node.name) if is_one else None
+        if not isinstance(node, ast.Variable) or self._is_undeclared(node.name):
+            return None
+        found = self._checked.resolution.found(node.name)
         return found.symbol if found is not None and found.module is not None else None
 
     def _is_variable(self, node: ast.Expression) -> bool:
