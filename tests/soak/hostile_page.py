@@ -146,7 +146,7 @@ def growth_section(rows: Sequence[Mapping[str, Any]]) -> str:
         steepest = max(several, key=_slope)
         wide = sum((row["memory_slope"] or 0) > _LINEAR for row in several)
         lines.append(
-            f"| {entry} | {len(several)} | {median(slopes):.2f} | {_slope(steepest):.2f} "
+            f"| {entry} | {len(several)} | {_said(median(slopes))} | {_said(_slope(steepest))} "
             f"| {steepest['shape']} | {wide} |"
         )
     return "\n".join([*lines, ""])
@@ -154,6 +154,11 @@ def growth_section(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def _slope(row: Mapping[str, Any]) -> float:
     return float("inf") if row["time_slope"] is None else float(row["time_slope"])
+
+
+def _said(slope: float) -> str:
+    """Return a slope as text; one that is infinite stands for a second size that was not tried."""
+    return "too slow" if slope == float("inf") else f"{slope:.2f}"
 
 
 def page(counts: Mapping[str, Any], growth: str = "") -> str:
