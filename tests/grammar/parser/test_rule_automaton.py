@@ -73,7 +73,7 @@ class _Row(dict[str, int]):
 
     uses = 0
 
-    def items(self) -> ItemsView[str, int]:
+    def items(self) -> ItemsView[str, int]:  # type: ignore[override]
         _Row.uses += 1
         return super().items()
 

@@ -144,12 +144,13 @@ def test_a_line_is_searched_once_for_its_comment(monkeypatch: pytest.MonkeyPatch
     """However often a line is asked for its comment, its characters are looked at once."""
     searched: list[int] = []
 
+    comments: re.Pattern[str] = source_module._COMMENT
+
     class Pattern:
         def finditer(self, text: str) -> Iterator[re.Match[str]]:
             searched.append(len(text))
             return comments.finditer(text)
 
-    comments = source_module._COMMENT
     monkeypatch.setattr(source_module, "_COMMENT", Pattern())
     source = Source("HALT\nI=1 ; one\n")
     assert ["; one"] * 50 == [found.text for _ in range(50) if (found := source.comment(2))]
