@@ -68,9 +68,8 @@ class OperandEdits:
             for rule in self._prefixed or filter(None, [self._operands]):
                 edits = (*self.forms.reserving(text), AddAlternative(rule, f"{text} {rule}"))
                 title = f"{text} ahead of an operand"
-                is_known = (
-                    text.strip("'") in self.at.rules.signs_between
-                )  # a sign that operands have already
+                # a sign that operands have already
+                is_known = text.strip("'") in self.at.rules.signs_between
                 yield InferredStep(title, edits, tuple(members), is_known=is_known)
 
     def _note_operator(

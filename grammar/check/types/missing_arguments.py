@@ -75,7 +75,8 @@ def _may_have_more(answer: Answer, arguments: int) -> bool:
 def missing_arguments(calls: Iterable[OpenCall]) -> Iterator[Diagnostic]:
     """Yield the single call of a routine, or with one command, that is unlike all others.
 
-    A call with more arguments is only told if nothing is known of the routine.
+    A call with more arguments is only told if nothing is known of the routine, and is a note, since
+    the last parameters of a routine are often not used.
     """
     routines: dict[str, list[OpenCall]] = {}
     commands: dict[tuple[str, str], list[OpenCall]] = {}
@@ -99,5 +100,7 @@ def missing_arguments(calls: Iterable[OpenCall]) -> Iterator[Diagnostic]:
     for call, (usual, others) in found.items():
         many = f"{counted(usual)} in its {others} other calls"
         message = f"{call.name} has {many}, and {call.arguments} here"
-        slug = "argument-missing" if call.arguments < usual else "too-many-arguments"
-        yield diagnose(slug, call.path, call.region, message, severity="warning")
+        if call.arguments < usual:
+            yield diagnose("argument-missing", call.path, call.region, message, severity="warning")
+        else:
+            yield diagnose("too-many-arguments", call.path, call.region, message, severity="note")

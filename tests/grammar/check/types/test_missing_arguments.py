@@ -34,7 +34,7 @@ def test_one_call_with_fewer(agrees: Agrees, lines: list[str]) -> None:
 @pytest.mark.parametrize(
     "lines",
     [
-        ["BAS (#TOOL,1,2) ;> KRL301?"],
+        ["BAS (#TOOL,1,2) ;> KRL301-"],
         ["BAS (#TOOL,1,2)"] * 2,
         ["BAS (#PTP_PARAMS,1,2)"],  # another command may have more
     ],
