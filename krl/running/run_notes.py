@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 _MOST_LISTED = 3
 _START_REFUSED = 1443
+_LENGTH_ZERO = 3171
 #: Kinds of messages of programs that an operator has to deal with, as a trace writes them.
 _ASKING = ("quit", "dialogue", "state", "waiting")
 #: The kinds of events that notes look at.
@@ -44,8 +45,9 @@ def run_notes(done: "RunResult", program: "CheckedProgram", setup: "RunSetup") -
     for event in islice(refused(done), _MOST_LISTED):
         yield f"{event.task} program: {event.place}: {event.fields['text']}"
     yield from _seen(done)
-    if not done.controller.points and setup.routine is None:
-        yield from _elsewhere(program, used)
+    if not done.controller.points:
+        short = [event for event in done.events if _has_number(event, _LENGTH_ZERO)]
+        yield from _of_length_zero(short) if short else _elsewhere(program, setup, used)
     if done.outcome.ending == "time" and setup.patience <= done.outcome.time < setup.until:
         stood = f"{setup.patience / 1e6:g} s"
         yield f"the arm has stood still for {stood}; --until S goes on for longer"
@@ -101,13 +103,25 @@ def refused(done: "RunResult") -> Iterator["TraceEvent"]:
     """
     for event in done.events:
         is_fault = event.kind == "fault" and event.task == "submit"
-        is_refused = event.kind == "message" and event.fields["number"] == _START_REFUSED
-        if is_fault or is_refused:
+        if is_fault or _has_number(event, _START_REFUSED):
             yield event
 
 
-def _elsewhere(program: "CheckedProgram", used: "Sequence[StandIn]") -> Iterator[str]:
-    """Yield a hint where the motions are, if the run had none.
+def _has_number(event: "TraceEvent", number: int) -> bool:
+    """Return whether an event is a message with a number."""
+    return event.kind == "message" and event.fields["number"] == number
+
+
+def _of_length_zero(events: "Sequence[TraceEvent]") -> Iterator[str]:
+    """Yield the places of motions that end where they start."""
+    places = list(dict.fromkeys(str(event.place) for event in events))
+    yield f"no motion; the arm stands where these end: {_listed(places)}"
+
+
+def _elsewhere(
+    program: "CheckedProgram", setup: "RunSetup", used: "Sequence[StandIn]"
+) -> Iterator[str]:
+    """Yield a hint where the motions are, if the first routine has none.
 
     They may be in a block that was not entered, in other routines of the file, or in routines that
     no file has, for which stand-ins that do nothing were ``used``.
@@ -117,6 +131,8 @@ def _elsewhere(program: "CheckedProgram", used: "Sequence[StandIn]") -> Iterator
     from grammar.syntax.references import calls_in
     from grammar.syntax.walk import walk
 
+    if setup.routine is not None:
+        return
     kinds = ast.Motion | ast.SplineBlock
     first, *others = program.routines_of(program.main)
     called = calls_in(first.node.body)

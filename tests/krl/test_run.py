@@ -449,6 +449,14 @@ def test_routines_that_move_are_named(run: Run) -> None:
     assert (0, "no motion in main; others can be selected with --routine: go\n") == (status, err)
 
 
+def test_motions_to_where_the_arm_stands_are_told(run: Run) -> None:
+    """Where all motions end where they start, the arm has not moved, and their lines are named."""
+    home = "PTP {A1 0, A2 -90, A3 90, A4 0, A5 0, A6 0}\n"
+    status, _, err = run(2 * home)
+    told = "no motion; the arm stands where these end: main.src:2, main.src:3\n"
+    assert (0, told) == (status, err)
+
+
 def test_what_the_first_motion_depends_on_is_named(run: Run) -> None:
     """Where no motion was made, the block around the first one is told."""
     status, _, err = run("IF $IN[2] THEN\nPTP {A1 5}\nENDIF\n")
