@@ -148,7 +148,9 @@ def _elsewhere(
         if one.inside is not None:
             unit, line = program.main, program.main.line(one.inside.statement)
             where = f"{unit.module.path.rpartition('/')[2]}:{line}"
-            yield f"no motion; the first one is inside {where}: {unit.source.line(line).strip()}"
+            text = unit.source.line(line).strip()
+            hint = "; --io SCRIPT sets inputs" if re.search(r"\$IN\b", text, re.IGNORECASE) else ""
+            yield f"no motion; the first one is inside {where}: {text}{hint}"
         return
     missing = [one.name for one in used if one.kind == "routine" and one.origin != "library"]
     if moving:

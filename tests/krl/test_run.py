@@ -460,7 +460,12 @@ def test_motions_to_where_the_arm_stands_are_told(run: Run) -> None:
 def test_what_the_first_motion_depends_on_is_named(run: Run) -> None:
     """Where no motion was made, the block around the first one is told."""
     status, _, err = run("IF $IN[2] THEN\nPTP {A1 5}\nENDIF\n")
-    assert (0, "no motion; the first one is inside main.src:2: IF $IN[2] THEN\n") == (status, err)
+    told = (
+        "no motion; the first one is inside main.src:2: IF $IN[2] THEN; --io SCRIPT sets inputs\n"
+    )
+    assert (0, told) == (status, err)
+    status, _, err = run("IF $FLAG[2] THEN\nPTP {A1 5}\nENDIF\n")
+    assert (0, "no motion; the first one is inside main.src:2: IF $FLAG[2] THEN\n") == (status, err)
 
 
 def test_missing_routines_that_may_move_are_named(run: Run) -> None:

@@ -231,6 +231,8 @@ class _Project:
         paths = [content.path for content in self.contents]
         projects = linked(paths, looked, self.options) if self.options.kept else ()
         self._needs = needs(paths, looked, projects)
+        for project in projects:
+            project.forget()
         stale = {i: self.contents[i] for i, one in known.items() if not one.stands(self._needs[i])}
         self._parts = [
             pool.submit(process, check_part, number, paths, looked, again, self.options)
