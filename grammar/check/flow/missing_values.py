@@ -6,7 +6,9 @@ paths do and others do not, these may never be executed, so it is a note.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator
+from functools import cached_property
 
 from grammar.check.analysis.accesses import Access, Use, accesses
 from grammar.check.analysis.context import Context, PlacedStatement, RoutineBody
@@ -35,16 +37,41 @@ class _OnCondition:
 
 def check(context: Context) -> Iterator[Diagnostic]:
     """Yield findings about missing values in all routines of a file."""
+    slips = _Slips(context)
     for routine in context.routines:
-        yield from _read_too_early(context, routine)
+        yield from _read_too_early(context, routine, slips)
 
 
-def _read_too_early(context: Context, routine: RoutineBody) -> Iterator[Diagnostic]:
+class _Slips:
+    """What the undeclared names of a file may be slips of, which is told there."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+
+    def within(self, routine: RoutineBody) -> frozenset[str]:
+        """Return the names that may be meant in a routine, in upper case."""
+        first, last = (bisect_left(self._places, (end, "")) for end in routine.node.span)
+        return frozenset(name for _, name in self._places[first:last])
+
+    @cached_property
+    def _places(self) -> list[tuple[int, str]]:
+        """The names that may be meant, each with where another one is written, in that order."""
+        likely = LikelyNames(self._context)
+        return sorted(
+            (use.name.span[0], near.upper())
+            for uses in self._context.open_uses.values()
+            for use in uses
+            if use.space is Space.VALUE
+            for near in likely.of(use)
+        )
+
+
+def _read_too_early(context: Context, routine: RoutineBody, slips: _Slips) -> Iterator[Diagnostic]:
     """Yield variables that are read where they cannot have a value yet [SCO-03, SCO-08]."""
     flow = data_flow(context, routine)
     reported: set[str] = set()
     early = list(flow.early(flow.variables))
-    misspelt = _misspelt(context, routine) if early else frozenset()
+    misspelt = slips.within(routine) if early else frozenset()
     for access in early:
         reported.add(access.key)
         if access.key in misspelt:
@@ -56,19 +83,6 @@ def _read_too_early(context: Context, routine: RoutineBody) -> Iterator[Diagnost
         message = f"{access.name.text} may have no value yet"
         reason = f"line {line} assigns to it, and there is a way past that"
         yield context.finding("read-perhaps-early", access.name, message, reason=reason)
-
-
-def _misspelt(context: Context, routine: RoutineBody) -> frozenset[str]:
-    """Return what an undeclared name in a routine may be a slip of, which is told there."""
-    start, end = routine.node.span
-    likely = LikelyNames(context)
-    return frozenset(
-        near.upper()
-        for uses in context.open_uses.values()
-        for use in uses
-        if start <= use.name.span[0] < end and use.space is Space.VALUE
-        for near in likely.of(use)
-    )
 
 
 def _possibly_early(

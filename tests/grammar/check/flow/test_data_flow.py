@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from grammar.check.analysis.context import Context
+from grammar.check.analysis.likely_names import LikelyNames
 from grammar.check.project.batch import CheckOptions, check_paths
 from grammar.diagnostics.diagnostic import Diagnostic
 
@@ -302,6 +304,27 @@ def test_a_variable_without_a_value_because_of_a_slip(agrees: Agrees) -> None:
     """It is told at the misspelt assignment alone."""
     text = routine("INT COUNTER", "COUNTRE = 1 ;> KRL101?", "$OV_PRO = COUNTER")
     agrees({"neg.src": text}, is_complete=None, with_data=True, ignored=("KRL117", "KRL702"))
+
+
+def test_slips_are_sought_once_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many routines read too early, the names of the file are collected as often."""
+    collected: list[Context] = []
+    init = LikelyNames.__init__
+
+    def counted(self: LikelyNames, context: Context) -> None:
+        collected.append(context)
+        init(self, context)
+
+    monkeypatch.setattr(LikelyNames, "__init__", counted)
+    works = []
+    for count in (10, 20):
+        collected.clear()
+        texts = [f"DEF A{i}()\nINT I\nU{i}=1\n$OV_PRO=I\nEND\n" for i in range(count)]
+        (tmp_path / "a.src").write_text("".join(texts), encoding="ascii")
+        found = check_paths([tmp_path], CheckOptions(), jobs=1).diagnostics
+        assert count == sum(one.code == "KRL409" for one in found)
+        works.append(len(collected))
+    assert works[0] == works[1]
 
 
 @pytest.mark.parametrize(
