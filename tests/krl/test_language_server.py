@@ -20,7 +20,7 @@ from grammar.semantics.link import Project
 from grammar.semantics.scopes import Module
 from grammar.syntax.source import Source
 from krl.cli import main
-from krl.commands.bench.growth_entries import tabs
+from krl.commands.bench.editor_messages import tabs
 from krl.commands.lsp import Bounded
 from krl.language_server import workspace
 from krl.language_server.calls import argument_hints, signature_at
