@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -89,9 +90,14 @@ def _lines(output: str) -> list[str]:
     return [line for line in lines if line.strip(" ─") and not line.startswith("(krl) ")]
 
 
+@cache
+def _krl() -> object:
+    return typer.main.get_command(app())
+
+
 def _commands(words: list[str]) -> tuple[object, list[str]]:
     """The innermost command that words name, and the words behind it."""
-    command: object = typer.main.get_command(app())
+    command = _krl()
     while words and words[0] in (inner := getattr(command, "commands", {})):
         command, words = inner[words[0]], words[1:]
     return command, words

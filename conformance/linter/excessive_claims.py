@@ -199,9 +199,9 @@ def _numbers_in(statement: str) -> set[int]:
 
 
 def _of_errors(case: Case) -> Iterator[str]:
-    """Yield expectations of $ERR.NUMBER without what says that it is the number of the message.
+    """Yield expectations of $ERR.NUMBER that cannot fail, or that no rule of their case is about.
 
-    And those that an earlier fault has met already: it stays set.
+    An earlier fault may have met them already, as the number stays set.
     """
     for one in case.expectations:
         is_meant = one.kind in ("value", "values") and case.is_sure(one)
