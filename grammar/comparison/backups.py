@@ -94,7 +94,7 @@ def _paired(old: Sequence[Content], new: Sequence[Content]) -> list[_Pair]:
         return [(old[0], new[0])]
     pairs: list[_Pair] = []
     left, right = list(old), list(new)
-    for address in (str.casefold, _address, _name):
+    for address in (str.casefold, _address, _folder_and_name, _name):
         there = _unique(right, address)
         here = _unique(left, address)
         for key, one in here.items():
@@ -112,6 +112,10 @@ def _paired(old: Sequence[Content], new: Sequence[Content]) -> list[_Pair]:
     return sorted(pairs, key=lambda pair: pair[1].path.casefold())
 
 
+def _folder_and_name(path: str) -> tuple[str, ...]:
+    return tuple(path.casefold().split("/")[-2:])
+
+
 def _name(path: str) -> str:
     return path.casefold().rpartition("/")[2]
 
@@ -120,8 +124,8 @@ def _suffix(path: str) -> str:
     return path.casefold().rpartition(".")[2]
 
 
-def _unique(contents: Sequence[Content], address: Any) -> dict[str, Content]:
-    found: dict[str, list[Content]] = {}
+def _unique(contents: Sequence[Content], address: Any) -> dict[object, Content]:
+    found: dict[object, list[Content]] = {}
     for one in contents:
         found.setdefault(address(one.path), []).append(one)
     return {key: some[0] for key, some in found.items() if len(some) == 1}

@@ -137,6 +137,17 @@ def test_the_folder_of_a_controller_is_no_part_of_a_path() -> None:
     assert [(["$OUT[1] = TRUE"], ["$OUT[2] = TRUE"])] == lines(same)
 
 
+def test_files_of_one_name_without_content_are_told_apart_by_their_folders() -> None:
+    """Where an empty data list lies in another folder with its own folder, it moved."""
+    paths = [f"src/{folder}/points.dat" for folder in ("left", "right")]
+    old, new = (
+        [Source("DEFDAT POINTS\nENDDAT\n", f"{above}{path}") for path in paths]
+        for above in ("", "daily/")
+    )
+    found = compare(old, new)["files"]
+    assert ([], [], 2) == (found["added"], found["removed"], len(found["moved"]))
+
+
 def test_a_file_that_moved_keeps_its_routines() -> None:
     """Another folder is told of the file, and of none of its routines."""
     old = [Source(MAIN, "KRC/R1/Program/a.src"), Source(DATA, "KRC/R1/Program/a.dat")]
